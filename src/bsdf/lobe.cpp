@@ -114,8 +114,10 @@ void BsdfBatch::sample() {
 std::span<const LobeKind* const> lobeKinds() {
     static const auto kinds = [] {
         std::vector<LobeKind> list;
-        for (int i = 0; i < one().count; ++i)
-            list.push_back({one().lobes[i].name, one().lobes[i].doc, one().lobes[i].distribution, i});
+        for (int i = 0; i < one().count; ++i) {
+            const LobeLanes& k = one().lobes[i];
+            list.push_back({k.name, k.doc, k.distribution, i, k.traits, k.eta});
+        }
         return list;
     }();
     static const auto all = [] {

@@ -47,6 +47,9 @@ struct LobeKind {
     std::string_view doc;
     bool distribution = false; ///< reads LobeParams::more
     int index = 0;             ///< in lobeKinds() and in lobeLanes()
+    int traits = 0;            ///< LobeTrait
+    float eta = 0;             ///< index of refraction of a call that gives none
+    bool has(LobeTrait t) const { return (traits & t) != 0; }
 
     // A single evaluation; see Bsdf.
     bool isDelta(const LobeParams&) const;

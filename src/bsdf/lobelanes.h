@@ -42,6 +42,17 @@ enum LobeNeed : int {
     kNeedsNumbers = 16 ///< kRowCount and kRowLobes
 };
 
+/// What callers must know of a kind besides its value.
+enum LobeTrait : int {
+    kCosineOfAxis = 1,    ///< the value includes the cosine between the light's direction and the axis
+    kCosineOfHorizon = 2, ///< the same for the horizon, if there is one
+    kRefracts = 4,        ///< light passes the surface and is bent by kRowEta
+    kSameFromBoth = 8,    ///< the same lobe if light and viewer change places
+    kAxisIsMirror = 16,   ///< the same, if the axis is the mirror direction of wo
+    kTakesExponent = 32,  ///< kRowA is the "exponent" of trace(); otherwise it is "samplecone"
+    kLambert = 64         ///< the value is max(0, axis . w) / pi
+};
+
 /// Rows of a value.
 enum ValueRow : int { kRowColour = 0, kRowFcos = 3, kRowPdf = 4, kValueRows = 5 };
 /// Rows of a sampled direction.
@@ -54,6 +65,8 @@ struct LobeLanes {
     const char* doc;
     bool distribution; ///< shared by trace() and bsdf()
     int needs;         ///< LobeNeed; other rows are undefined
+    int traits;        ///< LobeTrait
+    float eta;         ///< index of refraction of a call that gives none
     /// Sets the rows from kRowAlbedo on. Call first.
     void (*prepare)(float* block, uint32_t lanes);
     /// f cos and density for light from w (3 rows, unit), into `value` (kValueRows).

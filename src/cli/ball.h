@@ -7,6 +7,7 @@
 
 namespace alpenglow::cli {
 
+/// Settings of `alpenglow shade` for the ball.
 struct BallSettings {
     std::string shader; ///< file or name, as the user gave it
     rsl::ShaderKind kind = rsl::ShaderKind::Surface;
@@ -21,10 +22,10 @@ struct BallSettings {
 };
 
 /// Requests of the scene: a ball on a floor, under a lamp and a sky, as in examples/shaders/ball.rib. A surface is on the ball, a
-/// displacement pushes it, a volume is the air, a light is the lamp, an imager looks at the picture.
+/// displacement pushes it, a volume is the air, a light is the lamp, an imager processes the picture.
 std::string ballScene(const BallSettings&);
 
-/// Path traces it. The exit status.
+/// Path traces the ball and writes the picture. Returns the exit status.
 int shadeBall(const BallSettings&, Diagnostics&);
 
 } // namespace alpenglow::cli

@@ -156,7 +156,7 @@ std::string faultOfPictureName(const std::string& name, bool output) {
     if (output && name == "-")
         return isatty(STDOUT_FILENO) ? "standard output is a terminal; name a file, or lead it into one or into a program" : "";
     if (display::formatOfExtension(name)) return "";
-    return "\"" + name + "\" has no extension of a format that is written: " + display::kPictureExtensions +
+    return "\"" + name + "\" has no extension of a format that is written: " + display::pictureExtensions() +
            (output ? "; - is standard output" : "");
 }
 

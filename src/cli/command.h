@@ -32,9 +32,9 @@ struct StatusText {
     Status status;
     const char* meaning;
 };
-std::span<const StatusText> statusTexts();
+std::span<const StatusText> statusTexts(); ///< in the order of their numbers
 
-/// Runs what a command line asks for. Returns the exit status; prints its messages. Lets exceptions of the work through.
+/// Runs a command line. Returns the exit status; prints messages. Exceptions of the work pass through.
 int runProgram(int argc, char** argv);
 
 /// Each describes its options to the parser and, when its subcommand is called, does the work and sets *status.
@@ -59,7 +59,7 @@ Diagnostics::Handler printer(Severity least = Severity::Warning);
 /// Flags of the process that a signal sets: 0, then 1 after the first Ctrl-C. A second ends the process at once with status 130.
 const StopFlag* watchInterrupts();
 
-/// As if the first Ctrl-C had come, as often as this signal comes: how a process asks those that it began to stop.
+/// Treats this signal as the first Ctrl-C. A process uses it to stop the processes that it has started.
 void watchStopSignal(int signal);
 /// Leaves Ctrl-C to the process that began this one.
 void leaveInterrupts();
@@ -80,7 +80,7 @@ void addDialect(CLI::App&, std::string& name);
 /// with `output`, "-" is standard output, as long as that is no terminal.
 std::string faultOfPictureName(const std::string& name, bool output);
 
-/// What --format says, "640x480"; a side may have limits::kImageSide pixels. Throws CLI::ValidationError.
+/// Reads the value of --format, "640x480", in pixels; a side may have limits::kImageSide pixels. Throws CLI::ValidationError.
 void readFormat(const std::string&, int* width, int* height);
 /// The last of these files is made of the others, and is none of them. Throws CLI::ValidationError.
 void refuseOwnInput(const std::vector<std::string>& files);

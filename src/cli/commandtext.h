@@ -10,6 +10,7 @@ class App;
 
 namespace alpenglow::cli {
 
+/// An option or argument.
 struct OptionText {
     std::vector<std::string> names;   ///< "-o", "--format"; of a positional argument its name alone
     std::string argument;             ///< "FILE"; "" for a flag
@@ -25,17 +26,20 @@ struct OptionText {
     bool takesListed() const;  ///< a name of the list that the program prints for this option alone: info --shadeops
 };
 
+/// A subcommand.
 struct CommandText {
     std::string name, description, footer;
     std::vector<OptionText> options; ///< positionals among them, in the order of the command line
 };
 
+/// The whole command line.
 struct ProgramText {
     std::string name, description, footer;
     std::vector<OptionText> options;
     std::vector<CommandText> commands;
 };
 
+/// The description of a parser with all its subcommands.
 ProgramText programText(const CLI::App&);
 
 /// The first part of a help text: up to a full stop, a semicolon or a bracket. For the lists of shells.

@@ -88,8 +88,8 @@ void addCompile(CLI::App& app, int* status) {
     c->callback([a, status] {
         OrderedJson report = OrderedJson::array();
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
-        std::string current, input; // the shader that is looked at, and what came by standard input
-        std::set<std::tuple<std::string, int, int, std::string>> told; // what the shaders of a file share is said once
+        std::string current, input;                                    // the current shader, and the text from standard input
+        std::set<std::tuple<std::string, int, int, std::string>> told; // messages of a file, each printed once
         Diagnostics diags([&, print, lines = limits::kSourceLines](Diagnostic d) mutable {
             if (d.place.line > 0 && !told.emplace(d.place.file, d.place.line, d.place.column, d.message).second) return;
             if (d.place.file.empty() && a->json) d.place.file = current;

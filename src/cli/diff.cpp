@@ -28,7 +28,7 @@ OrderedJson differencesJson(const display::DiffResult& r, bool within) {
 bool writeDifference(const std::string& name, const display::Image& difference, Diagnostics& diags) {
     display::WriteOptions w;
     w.format = display::formatOfExtension(name).value_or(display::Format::Exr);
-    if (w.format == display::Format::Png || w.format == display::Format::Jpeg) w.sample = display::Sample::UInt8;
+    if (!display::written(w.format).floats) w.sample = display::Sample::UInt8;
     w.policy.allowWrite = true;
     return display::writeImage(name, difference, w, diags);
 }
@@ -43,9 +43,7 @@ void addDiff(CLI::App& app, int* status) {
     };
     auto a = std::make_shared<Arguments>();
     CLI::App* c = app.add_subcommand("diff", "Compare two pictures: mean and maximum error, RMSE");
-    c->add_option("a", a->a, "Picture: EXR, TIFF, PNG, JPEG, Radiance, zfile or Pixar's native texture")
-        ->type_name("FILE")
-        ->required();
+    c->add_option("a", a->a, "Picture: " + display::readFormats())->type_name("FILE")->required();
     c->add_option("b", a->b, "Picture of the same size")->type_name("FILE")->required();
     c->add_option("-o", a->output, "Write the absolute difference as a picture")->type_name("FILE");
     c->add_option("--tolerance", a->tolerance, "Largest error that counts as equal; default 0")

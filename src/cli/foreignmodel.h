@@ -1,5 +1,5 @@
-// Models of other programs (models/modelfile.h) as scenes: their maps beside the RIB, or in a folder that lives as long as the
-// run.
+// Models of other programs (models/modelfile.h) as scenes: their maps are in the folder of the RIB, or in a folder that lives as
+// long as the run.
 #pragma once
 #include "base/diagnostics.h"
 #include "models/rib.h"

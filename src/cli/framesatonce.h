@@ -9,18 +9,18 @@
 
 namespace alpenglow::cli {
 
-/// What a run has of them.
+/// The processes of a run, or none if frames are drawn one by one.
 class FramesAtOnce {
 public:
-    /// most: 1: frames are drawn one by one. `told` prints, and outlives this.
+    /// most: frames that are drawn at the same time; 1: one by one. `told` prints messages and must outlive this object.
     FramesAtOnce(int most, const render::RenderSettings&, Diagnostics& told);
     FramesAtOnce(const FramesAtOnce&) = delete;
     FramesAtOnce& operator=(const FramesAtOnce&) = delete;
     /// Null: frames are drawn one by one.
     render::FrameProcesses* processes() { return processes_ ? &*processes_ : nullptr; }
-    /// Where what is reported comes out in the order of the frames.
+    /// Messages reported here are printed in the order of the frames.
     Diagnostics& said() { return processes_ ? said_ : told_; }
-    /// Who reads; outlives all frames.
+    /// Sets the reader, which must outlive all frames.
     void setReader(ri::RibReader& r) { reader_ = &r; }
 
 private:

@@ -40,7 +40,7 @@ int writeTo(const std::string& name, Diagnostics& d,
     return d.errors() ? kDoneWithErrors : kDone;
 }
 
-/// A surface of a MaterialX file; its maps lie beside the shader, which names them without a folder.
+/// A surface of a MaterialX file; its maps are in the folder of the shader, which names them without a folder.
 std::string shaderOf(const FromArguments& a, Diagnostics& d) {
     const fs::path out(a.output == "-" ? fs::path("material") : fs::path(a.output));
     std::string standard;

@@ -5,7 +5,7 @@
 
 namespace alpenglow::cli {
 
-/// Everything that a message says; places count from 1, columns and lengths in bytes.
+/// A message as JSON; lines and columns count from 1, columns and lengths in bytes.
 nlohmann::ordered_json diagnosticJson(const Diagnostic&);
 
 /// With `json` a handler that adds warnings and errors to `said`, which outlives it; else printer().

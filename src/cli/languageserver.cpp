@@ -230,7 +230,7 @@ void LanguageServer::notification(const std::string& method, const Json& params)
         changed(uri);
         includers(d.path());
     } else if (method == "textDocument/didSave") {
-        // An include may be what was saved: the others are looked at again.
+        // The saved file may be an include of the others: they are checked again.
         for (auto& [uri, d] : documents_) {
             d.touch();
             changed(uri);

@@ -10,7 +10,7 @@ namespace alpenglow::cli {
 class LanguageServer {
 public:
     using Json = nlohmann::json;
-    /// Folders for #include beside that of the shader, and macros.
+    /// Folders for #include in addition to that of the shader, and macros.
     explicit LanguageServer(rsl::FrontOptions options) : options_(std::move(options)) {}
 
     /// Answers one message; what is to be sent, in order. Never throws: what cannot be understood gets an error or, when it asks
@@ -83,7 +83,7 @@ nlohmann::json tokenLegend();
 const std::vector<std::string>& languageKeywords();
 /// Is this a predefined variable of some kind of shader, or PI?
 bool isPredefined(const std::string& name);
-/// The text with every line indented by its depth and without blanks at the ends of lines. What a line says stays as it is.
+/// The text with every line indented by its depth and without blanks at the ends of lines. The text of a line is kept.
 /// `tab`: columns of a step; `spaces`: made of spaces, else of tabs.
 std::string formatted(const std::string& text, size_t tab, bool spaces);
 

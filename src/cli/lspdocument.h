@@ -1,4 +1,4 @@
-// One text that is open in an editor: its lines, what the compiler makes of it, and what stands at a place. Positions are bytes
+// One text that is open in an editor: its lines, its compiled form, and the word at a place. Positions are bytes
 // from the start of the text; the server converts from and to those of the protocol.
 #pragma once
 #include "base/diagnostics.h"
@@ -67,7 +67,7 @@ public:
     enum class Where { Code, Comment, String };
     Where where(size_t position) const;
     std::optional<CallAround> callAround(size_t position) const;
-    /// End of the definition whose name stands here: behind the '}' that closes its body.
+    /// End of the definition whose name is here: after the '}' that closes its body.
     size_t endOfDefinition(size_t name) const;
     /// The comment directly above the line (from 0), without its marks.
     static std::string commentAbove(const std::string& text, size_t line);
@@ -93,7 +93,7 @@ public:
     std::optional<std::pair<size_t, size_t>> macro(const std::string& name) const;
     /// As useAt(), by the name alone: where the text around it cannot be understood, or a statement with an error in it is gone.
     Use named(size_t word) const;
-    /// What stands in front of "->" or "." before a name: "this", "ray", "ray->start"; nothing where there is neither.
+    /// The text in front of "->" or "." before a name: "this", "ray", "ray->start"; nothing where there is neither.
     struct Receiver {
         std::string name;
         bool arrow = false;

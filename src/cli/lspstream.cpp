@@ -41,7 +41,7 @@ MessageStream::Kind MessageStream::header(std::string line) {
         }
         return Kind::More;
     }
-    // Where a body was longer than it said, the header stands behind its rest.
+    // If a body was longer than its Content-Length, the next header follows its rest.
     std::string small = line;
     std::transform(small.begin(), small.end(), small.begin(), [](unsigned char c) { return char(std::tolower(c)); });
     const size_t name = small.rfind(kName);
@@ -76,7 +76,7 @@ MessageStream::Kind MessageStream::next(std::string& body) {
     }
     if (length_ > limits::kServerMessage) {
         body_ = false;
-        skipping_ = true; // whether so much ever comes, nobody knows: the next header ends it
+        skipping_ = true; // so much may never come: the next header ends it
         return Kind::TooLong;
     }
     if (held() < length_) return Kind::More;

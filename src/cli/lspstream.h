@@ -1,11 +1,12 @@
 // Cuts the bytes that a client of the language server sends into messages: headers, an empty line, as many bytes as
-// Content-Length says. What is no message is told once, and the next header is looked for.
+// Content-Length says. Other text is reported once, and the next header is searched.
 #pragma once
 #include <cstddef>
 #include <string>
 
 namespace alpenglow::cli {
 
+/// Splits a stream of bytes into messages. Feed bytes, then call next() until it returns More.
 class MessageStream {
 public:
     enum class Kind {
@@ -27,10 +28,10 @@ private:
 
     std::string buffer_;
     size_t at_ = 0, length_ = 0;
-    bool known_ = false;    ///< the length, behind its header
-    bool body_ = false;     ///< behind the empty line
+    bool known_ = false;    ///< the length has been read
+    bool body_ = false;     ///< the empty line has been read
     bool others_ = false;   ///< lines that are no length stood before it
-    bool skipping_ = false; ///< behind a fault, until the next length
+    bool skipping_ = false; ///< after a fault, until the next length
 };
 
 } // namespace alpenglow::cli

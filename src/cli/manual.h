@@ -10,7 +10,7 @@ namespace alpenglow::cli {
 /// "surface, volume"; "any shader" for all kinds.
 std::string contextText(uint32_t contexts);
 
-/// Everything the descriptor says, as `alpenglow info --shadeops NAME` prints it.
+/// The descriptor as text, as `alpenglow info --shadeops NAME` prints it.
 std::string manualText(const rsl::Shadeop&);
 nlohmann::ordered_json manualJson(const rsl::Shadeop&);
 /// Without a heading. `first` (may be null) is the signature to be shown before the others.

@@ -1,4 +1,4 @@
-// Flags of prman, renderdl and aqsis, in one table: what each means here.
+// Flags of prman, renderdl and aqsis, and their equivalents here, in one table.
 #pragma once
 #include <span>
 #include <string>
@@ -11,20 +11,21 @@ namespace alpenglow::cli {
 struct OldFlag {
     enum class Use {
         Accepted, ///< becomes `here`
-        Dropped,  ///< ignored: nothing here needs it; `here` says why
-        Noted,    ///< the same, and users are told, for something else happens than they asked for
-        Answered, ///< ends with status 2 and the text `here`, which says what to write instead
+        Dropped,  ///< ignored because it is not needed; `here` has the reason
+        Noted,    ///< the same, with a message, because the effect differs from what was asked for
+        Answered, ///< ends with status 2 and the text `here`, which names the replacement
     };
     std::string_view name;      ///< "-res"
-    int values = 0;             ///< how many follow; a first one may also stand behind ':' or '=' ("-t:4", "-frames=1-3")
+    int values = 0;             ///< how many follow; a first one may also follow ':' or '=' ("-t:4", "-frames=1-3")
     std::string_view renderers; ///< "prman, renderdl"
     Use use = Use::Dropped;
     std::string_view here; ///< "--format $1x$2", or text for people
 };
 
+/// The flags of `render`.
 std::span<const OldFlag> oldFlags();
 
-/// What to use in the place of filters of a scene that is rendered.
+/// The hint for users of Rif filters of a scene that is rendered.
 inline constexpr std::string_view kNoRif =
     "filters (Rif) belong to `alpenglow rib --filter`, which writes to a pipe that `alpenglow render -` reads";
 
@@ -32,7 +33,7 @@ inline constexpr std::string_view kNoRif =
 struct TranslatedFlags {
     std::vector<std::string> arguments;
     std::vector<std::string> notes; ///< what was replaced or ignored, a line each
-    std::vector<std::string> told;  ///< the same of flags that ask for what is not done
+    std::vector<std::string> told;  ///< the same for flags without an equivalent
     std::string error;              ///< not "": a flag that cannot be taken, and what to write instead
 };
 

@@ -8,10 +8,10 @@
 
 namespace alpenglow::cli {
 
-/// A program that this one stands for.
+/// A program that this one replaces.
 struct OldName {
     std::string_view name;    ///< "txmake"
-    std::string_view command; ///< "maketx", or what `alpenglow ptc` is told: "ptc brick"; "": not done
+    std::string_view command; ///< "maketx", or a subcommand with its first argument: "ptc brick"; "": not done
     std::string_view instead; ///< of what is not done: what to use here; else a note, or ""
 };
 
@@ -20,7 +20,7 @@ std::span<const OldName> oldNames();
 /// The entry of a program's own name, "/opt/bin/txmake" or "txmake.exe". Null: it is none of them.
 const OldName* oldNameOf(const char* program);
 
-/// Flags of the tools that a subcommand stands for: "maketx", "compile", "info", "rib", "ptc". Empty for others.
+/// Flags of the tools that a subcommand replaces: "maketx", "compile", "info", "rib", "ptc". Empty for others.
 std::span<const OldFlag> toolFlags(std::string_view command);
 
 /// For `alpenglow render -catrib` and renderdl's -cat, and what catrib takes from the environment (RIFORMAT, RICOMPRESSION,

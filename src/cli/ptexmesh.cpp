@@ -114,7 +114,7 @@ std::string check(const Mesh& m) {
     return "";
 }
 
-/// Which faces lie beside each other: edges from a to b and from b to a.
+/// Which faces are adjacent: edges from a to b and from b to a.
 void findNeighbours(const Mesh& m, std::vector<ptex::Face>& faces) {
     std::map<std::pair<int, int>, std::pair<int32_t, uint8_t>> edges;
     const size_t n = m.faces[0].size();

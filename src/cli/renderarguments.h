@@ -1,4 +1,4 @@
-// What the command line of render says.
+// The arguments of render.
 #pragma once
 #include "render/settings.h"
 #include <string>
@@ -15,7 +15,7 @@ namespace alpenglow::cli {
 struct RenderArguments {
     render::RenderSettings settings;
     std::vector<std::string> scenes, searchPaths, displays, rib;
-    std::vector<std::string> lastArchivePaths, lastProceduralPaths; ///< of the environment, behind all others
+    std::vector<std::string> lastArchivePaths, lastProceduralPaths; ///< of the environment, after all others
     std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
     std::string gamma, preview;
     std::vector<std::pair<std::string, int>> tev; ///< hosts and ports

@@ -154,10 +154,10 @@ void addPictures(CLI::App& c, RenderArguments& a) {
     c.add_option(
          "-o", s.output,
          std::string("Write the picture to FILE instead of the scene's displays; the extension selects the format (") +
-             display::kPictureExtensions +
+             display::pictureExtensions() +
              "). Depth maps, shadow maps and displays of other outputs are still written. # or %04d stands for the frame number; "
              "without it, the number is inserted before the extension if the scene has several frames. -: write to standard "
-             "output, as PNG or in the format of the scene's first display (openexr, tiff, jpeg), one frame after the other")
+             "output, as PNG or in the format of the scene's first display, one frame after the other")
         ->type_name("FILE")
         ->group("Pictures");
     c.add_option("--display", a.displays,
@@ -181,7 +181,7 @@ void addPictures(CLI::App& c, RenderArguments& a) {
         ->group("Pictures");
     c.add_option("--gamma", a.gamma,
                  "Transfer curve of the pictures, instead of that of Exposure or of path: a display gamma, 1 for linear, or srgb "
-                 "(8-bit PNG, JPEG and TIFF; docs/colour.md)")
+                 "(8-bit pictures; docs/colour.md)")
         ->type_name("G|srgb")
         ->group("Pictures");
     c.add_option("--frames", a.frames, "Render only these frames, for example 1,4-6")->type_name("LIST")->group("Pictures");

@@ -1,4 +1,4 @@
-// Filters of `alpenglow rib`: libraries in C++ and functions in Python, one behind the other.
+// Filters of `alpenglow rib`: libraries in C++ and functions in Python, one after the other.
 #pragma once
 #include "base/stopflag.h"
 #include "ri/receiver.h"
@@ -15,7 +15,7 @@ public:
     /// them. Null after a report where one cannot be used. `to`, `said` and `stop` (may be null) must outlive it.
     static std::unique_ptr<RibFilters> make(const std::vector<std::string>& specs, ri::RequestReceiver& to, Diagnostics& said,
                                             const StopFlag* stop);
-    /// Where requests begin their way.
+    /// The receiver of the requests that are filtered.
     ri::RequestReceiver& first() { return stages_.empty() ? to_ : *stages_.back(); }
 
 private:
@@ -24,7 +24,7 @@ private:
     std::vector<std::unique_ptr<ri::RequestReceiver>> stages_; ///< the last one first
 };
 
-/// A function in Python, in a process of its own; see RibFilters::make for `spec`. Null with a reason where there is none.
+/// A function in Python, in a separate process; see RibFilters::make for `spec`. Null with a reason where there is none.
 std::unique_ptr<ri::RequestReceiver> pythonFilter(const std::string& spec, const std::vector<std::string>& arguments,
                                                   ri::RequestReceiver& to, Diagnostics& said, const StopFlag* stop,
                                                   std::string& why);

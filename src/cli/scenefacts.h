@@ -1,4 +1,4 @@
-// What is in a scene: its frames, with what stands in them.
+// The contents of a scene: its frames and what they hold.
 #pragma once
 #include "base/diagnostics.h"
 #include <nlohmann/json.hpp>
@@ -8,7 +8,7 @@ namespace alpenglow::cli {
 
 /// Whether a name ends as those of scenes do.
 bool namedAsScene(const std::string& file);
-/// Adds what is in a scene. Procedurals are not made; programs are not run. False: it cannot be read.
+/// Adds what is in a scene. Procedurals are not expanded; programs are not run. Returns false if it cannot be read.
 bool addScene(nlohmann::ordered_json& facts, const std::string& file, Diagnostics&);
 
 } // namespace alpenglow::cli

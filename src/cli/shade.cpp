@@ -193,7 +193,7 @@ int shade(const ShadeArguments& a) {
     auto kernel = compiler.kernel(shader, options, diags);
     if (!kernel) return kNothingRendered;
     const display::Format format = pictureFormat(a.output);
-    const bool png = format == display::Format::Png || format == display::Format::Jpeg;
+    const bool png = !display::written(format).floats; // shows colours
     const auto colour = [&](const auto& o) { return o.name == "Ci"; };
     if (kernel->outputs().empty() || (png && std::none_of(kernel->outputs().begin(), kernel->outputs().end(), colour))) {
         std::string writes;
@@ -358,7 +358,7 @@ void addShade(CLI::App& app, int* status) {
     CLI::App* c = app.add_subcommand("shade", "Show a shader on a lit ball, or over a unit patch");
     c->add_option("shader", a->shader, "RSL file, or the name of a shader on the search path")->type_name("FILE")->required();
     c->add_option("-o", a->output,
-                  std::string("Picture to write (") + display::kPictureExtensions +
+                  std::string("Picture to write (") + display::pictureExtensions() +
                       "; - is standard output); for a patch: Ci and Oi, or the variables of --output")
         ->type_name("FILE")
         ->capture_default_str();

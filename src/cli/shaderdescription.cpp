@@ -228,7 +228,7 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
     d.plugins = shader->program().plugins;
     d.structs = shader->program().structs;
     const rsl::Program& program = shader->program();
-    // What a pass of the compiler adds stands in a file of its own, "<generateSamples>": nobody gives it or calls it.
+    // What a pass of the compiler adds stands in a file of its own, "<generateSamples>": users neither set nor call it.
     const auto added = [&](const rsl::Place& place) {
         return place.file >= 0 && size_t(place.file) < program.files.size() && program.files[size_t(place.file)].starts_with("<");
     };

@@ -1,4 +1,4 @@
-// What tools show of a shader: everything it declares, as text and as JSON.
+// Everything that a shader declares, as text and as JSON, for `alpenglow info` and other tools.
 #pragma once
 #include "rsl/compiler.h"
 #include <nlohmann/json.hpp>
@@ -36,17 +36,20 @@ struct KindDescription {
     std::string whyNot;
 };
 
+/// A member variable of a class.
 struct MemberDescription {
     std::string type, name, storage;
     bool isPublic = false, constant = false;
 };
 
+/// A method of a class.
 struct MethodDescription {
     std::string signature, name;
     bool isPublic = false;
     bool entry = false; ///< the renderer calls it
 };
 
+/// A shader or class.
 struct ShaderDescription {
     std::string name, file;
     bool object = false;                 ///< a class
@@ -60,9 +63,10 @@ struct ShaderDescription {
     std::vector<KindDescription> kinds; ///< at least one; of a class all that its methods make it
 };
 
-/// Looks at a shader. What cannot be compiled further is reported, and what is known is described.
+/// Describes a shader. If it cannot be compiled, that is reported, and the description has what is known.
 ShaderDescription describe(rsl::ShaderCompiler&, const std::shared_ptr<const rsl::CompiledShader>&, Diagnostics&);
 
+/// The description for programs and for people.
 nlohmann::ordered_json descriptionJson(const ShaderDescription&);
 std::string descriptionText(const ShaderDescription&);
 

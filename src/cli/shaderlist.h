@@ -6,6 +6,7 @@
 
 namespace alpenglow::cli {
 
+/// A shader that was found.
 struct ListedShader {
     std::string name, kind, file; ///< kind: "surface", ..., "class"
     std::string doc;              ///< the first sentence of the comment at the top of the file; "" when there is none
@@ -16,6 +17,7 @@ struct ListedShader {
 std::vector<ListedShader> listShaders(const std::vector<std::string>& folders);
 /// A line each, under the name of their folder.
 std::string shaderListText(const std::vector<ListedShader>&);
+/// The list for programs.
 nlohmann::ordered_json shaderListJson(const std::vector<ListedShader>&);
 
 } // namespace alpenglow::cli

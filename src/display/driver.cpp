@@ -12,9 +12,17 @@ std::string lower(std::string s) {
 } // namespace
 
 const std::vector<const DriverDescriptor*>& drivers() {
-    static const std::vector<const DriverDescriptor*> list{&openexrDriver, &tiffDriver,        &fileDriver, &pngDriver,
-                                                           &jpegDriver,    &framebufferDriver, &nullDriver, &zfileDriver,
-                                                           &deepDriver,    &otherDriver};
+    static const std::vector<DriverDescriptor> ofFormats = [] {
+        std::vector<DriverDescriptor> all;
+        for (Format f : writtenFormats()) all.push_back(formatDriver(f));
+        return all;
+    }();
+    static const std::vector<const DriverDescriptor*> list = [] {
+        std::vector<const DriverDescriptor*> all;
+        for (const DriverDescriptor& d : ofFormats) all.push_back(&d);
+        all.insert(all.end(), {&fileDriver, &framebufferDriver, &nullDriver, &zfileDriver, &deepDriver, &otherDriver});
+        return all;
+    }();
     return list;
 }
 

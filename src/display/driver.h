@@ -3,6 +3,7 @@
 #pragma once
 #include "display/imageio.h"
 #include "display/quantize.h"
+#include <functional>
 #include <memory>
 
 namespace alpenglow::display {
@@ -43,8 +44,9 @@ public:
 struct DriverDescriptor {
     std::vector<std::string> names; ///< display types it answers to, any case
     std::string doc;                ///< for the manual: what it writes, which parameters it reads
-    std::unique_ptr<Driver> (*make)();
-    bool writes = true; ///< a file under the display's name
+    std::function<std::unique_ptr<Driver>()> make;
+    bool writes = true;                ///< a file under the display's name
+    std::optional<Format> format = {}; ///< that it writes whatever the name; nothing: another file, or by the name
 };
 
 /// All drivers, in the order of the manual.

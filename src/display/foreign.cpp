@@ -49,10 +49,8 @@ std::optional<Image> pictureFrom(const ChildResult& child, const DecodeContext& 
 } // namespace
 
 const ForeignModule& pictureModule() {
-    static const ForeignModule m{
-        "libalpenglow_pictures.so", "ALPENGLOW_PICTURES", "OpenImageIO (libopenimageio2.4)",
-        "it is in none of the formats that are read here (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, KTX, zfile, "
-        "Pixar's native textures)"};
+    static const ForeignModule m{"libalpenglow_pictures.so", "ALPENGLOW_PICTURES", "OpenImageIO (libopenimageio2.4)",
+                                 "it is in none of the formats that are read here (" + readFormats() + ")"};
     return m;
 }
 

@@ -44,7 +44,7 @@ inline constexpr const char* kReadForeignPicture = "alpenglow_read_picture";
 struct ForeignModule {
     const char *file, *variable; ///< its name; the environment variable that names another file
     const char* needs;           ///< package to install, for messages
-    const char* known;           ///< formats that work without it, for messages
+    std::string known;           ///< formats that work without it, for messages
 };
 const ForeignModule& pictureModule();
 const ForeignModule& gridModule();

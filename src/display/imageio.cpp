@@ -74,32 +74,44 @@ unsigned toCode(float value, unsigned maximum, bool quantised) {
     return unsigned(std::floor(v + 0.5f));
 }
 
-static std::optional<Image> decodeAs(std::span<const uint8_t> b, const DecodeContext& ctx) {
-    auto starts = [&](std::initializer_list<int> magic) {
-        if (b.size() < magic.size()) return false;
-        size_t i = 0;
-        for (int m : magic)
-            if (b[i++] != uint8_t(m)) return false;
-        return true;
-    };
+// Described in the files of formats/.
+PictureFormat exrFormat(), tiffFormat(), pngFormat(), jpegFormat();
+PictureFormat zfileFormat(), radianceFormat(), pixarFormat(), ktxFormat(), targaFormat();
+
+/// All formats: first those of enum Format, in its order. Targa is last, because it has no magic number.
+static std::span<const PictureFormat> formats() {
+    static const PictureFormat kList[] = {exrFormat(),      tiffFormat(),  pngFormat(), jpegFormat(), zfileFormat(),
+                                          radianceFormat(), pixarFormat(), ktxFormat(), targaFormat()};
+    return kList;
+}
+
+const WrittenFormat& written(Format f) { return *formats()[size_t(f)].written; }
+
+std::span<const Format> writtenFormats() {
+    static const std::vector<Format> kList = [] {
+        std::vector<Format> list;
+        while (formats()[list.size()].written) list.push_back(Format(list.size()));
+        return list;
+    }();
+    return kList;
+}
+
+std::string readFormats() {
+    std::string all;
+    for (const PictureFormat& f : formats()) all += (all.empty() ? "" : ", ") + std::string(f.name);
+    return all;
+}
+
+static std::optional<Image> decodeAs(Bytes b, const DecodeContext& ctx) {
     if (b.empty()) return ctx.refuse("the file is empty");
     try {
-        if (starts({0x76, 0x2f, 0x31, 0x01})) return decodeExr(b, ctx);
-        if (starts({'I', 'I', 42, 0}) || starts({'M', 'M', 0, 42}) || starts({'I', 'I', 43, 0}) || starts({'M', 'M', 0, 43}))
-            return decodeTiff(b, ctx);
-        if (starts({0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'})) return decodePng(b, ctx);
-        if (starts({0xff, 0xd8, 0xff})) return decodeJpeg(b, ctx);
-        if (starts({0x2f, 0x08, 0x67, 0xab}) || starts({0xab, 0x67, 0x08, 0x2f})) return decodeZfile(b, ctx);
-        if (starts({'#', '?'})) return decodeRadiance(b, ctx);
-        if (starts({0xfa, 0xce}) || starts({0xce, 0xfa})) return decodePixar(b, ctx);
-        if (looksLikeKtx(b)) return decodeKtx(b, ctx);
-        if (looksLikeTarga(b)) return decodeTarga(b, ctx); // last, because it has no magic number
+        for (const PictureFormat& f : formats())
+            if (f.recognise(b)) return f.decode(b, ctx);
         if (ctx.file) return readForeign(pictureModule(), ctx.name, ctx);
     } catch (const std::bad_alloc&) { return ctx.refuse("out of memory", Rie::NoMem); } catch (const std::length_error&) {
         return ctx.refuse("out of memory", Rie::NoMem);
     }
-    return ctx.refuse("it is not a picture in a known format (OpenEXR, TIFF, PNG, JPEG, Radiance, Targa, KTX, zfile, "
-                      "Pixar's native textures)");
+    return ctx.refuse("it is not a picture in a known format (" + readFormats() + ")");
 }
 
 std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::string& name, Diagnostics& diags,
@@ -130,20 +142,7 @@ bool writeImage(const std::string& path, const Image& image, const WriteOptions&
     std::string why;
     bool ok = false;
     try {
-        switch (options.format) {
-        case Format::Exr:
-            ok = encodeExr(*file, image, options, why);
-            break;
-        case Format::Tiff:
-            ok = encodeTiff(*file, image, options, why);
-            break;
-        case Format::Png:
-            ok = encodePng(*file, image, options, diags, why);
-            break;
-        case Format::Jpeg:
-            ok = encodeJpeg(*file, image, options, diags, why);
-            break;
-        }
+        ok = formats()[size_t(options.format)].encode(*file, image, options, diags, why);
     } catch (const std::bad_alloc&) { return refuse(Rie::NoMem, "out of memory"); }
     if (!ok && file->ok()) return refuse(Rie::System, why.empty() ? "the encoder failed" : why);
     return file->commit(diags) && ok;
@@ -154,25 +153,17 @@ std::optional<Format> formatOfExtension(const std::string& path) {
     if (dot == std::string::npos) return {};
     std::string e = path.substr(dot + 1);
     for (char& c : e) c = char(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
-    if (e == "exr") return Format::Exr;
-    if (e == "png") return Format::Png;
-    if (e == "tif" || e == "tiff") return Format::Tiff;
-    if (e == "jpg" || e == "jpeg") return Format::Jpeg;
+    for (Format f : writtenFormats())
+        for (const std::string& known : written(f).extensions)
+            if (e == known) return f;
     return {};
 }
 
-const char* toString(Format f) {
-    switch (f) {
-    case Format::Exr:
-        return "OpenEXR";
-    case Format::Tiff:
-        return "TIFF";
-    case Format::Png:
-        return "PNG";
-    case Format::Jpeg:
-        break;
-    }
-    return "JPEG";
+std::string pictureExtensions() {
+    std::string all;
+    for (Format f : writtenFormats())
+        for (const std::string& e : written(f).extensions) all += (all.empty() ? "." : " .") + e;
+    return all;
 }
 
 } // namespace alpenglow::display

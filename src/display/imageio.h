@@ -1,5 +1,5 @@
-// Reading and writing pictures: OpenEXR, TIFF, PNG, JPEG; reading only: Radiance, Targa, KTX, zfiles, Pixar's
-// native textures, and through a module (display/foreign.h) whatever OpenImageIO reads.
+// Reading and writing pictures. Each format has a file in formats/, which describes it; imageio.cpp has the list. A module
+// (display/foreign.h) reads what OpenImageIO reads.
 #pragma once
 #include "base/file.h"
 #include "display/image.h"
@@ -7,12 +7,30 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 namespace alpenglow::display {
 
+/// The formats that are written, in the order of the list.
 enum class Format { Exr, Tiff, Png, Jpeg };
-/// "OpenEXR", "TIFF", "PNG", "JPEG".
-const char* toString(Format);
+
+/// A format that is written.
+struct WrittenFormat {
+    const char* name;                    ///< for messages
+    std::vector<std::string> extensions; ///< in small letters, without the dot
+    bool floats = true;                  ///< holds floating point
+    bool codes = true;                   ///< holds integer codes, by Quantize
+    int bits = 16;                       ///< most bits of a code
+    std::vector<std::string> displays;   ///< display types that write it always
+    std::string doc;                     ///< for the manual of display types
+};
+const WrittenFormat& written(Format);
+/// The name for messages.
+inline const char* toString(Format f) { return written(f).name; }
+/// All formats that are written.
+std::span<const Format> writtenFormats();
+/// The names of all formats that are read, in one line.
+std::string readFormats();
 enum class Sample { UInt8, UInt16, Half, Float };
 
 struct ReadOptions {
@@ -28,8 +46,7 @@ std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::stri
 
 struct WriteOptions {
     Format format = Format::Exr;
-    /// EXR: Half or Float. TIFF: UInt8, UInt16, Float. PNG: UInt8, UInt16. JPEG: UInt8. Other types are converted to the nearest
-    /// that the format has; drivers report that before.
+    /// A type that the format does not have (WrittenFormat) is converted to the nearest; drivers report that before.
     Sample sample = Sample::Float;
     bool quantised = false; ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
     std::string compression = "zip"; ///< EXR: none rle zips zip piz; TIFF: none zip lzw packbits
@@ -41,8 +58,9 @@ struct WriteOptions {
 /// Writes a complete picture or nothing (base/file.h). Returns false after an error, which is reported.
 bool writeImage(const std::string& path, const Image&, const WriteOptions&, Diagnostics&);
 
-/// The format of a name's extension (kPictureExtensions, any case); nothing for others.
+/// The format of a name's extension, in any case; nothing for others.
 std::optional<Format> formatOfExtension(const std::string& path);
-inline constexpr const char* kPictureExtensions = ".exr .png .tif .tiff .jpg .jpeg";
+/// The extensions of all formats that are written: ".exr .tif ...".
+std::string pictureExtensions();
 
 } // namespace alpenglow::display

@@ -7,6 +7,7 @@
 #include "geometry/instance_attributes.h"
 #include "geometry/placed.h"
 #include "scene/deferred.h"
+#include "scene/primitivekinds.h"
 #include "scene/scene.h"
 #include "scene/solids.h"
 #include <algorithm>
@@ -17,32 +18,6 @@
 
 namespace alpenglow::geometry {
 namespace {
-
-struct Entry {
-    const char* kind;
-    ShapeRef (*make)(ShapeSource, Diagnostics&);
-};
-constexpr Entry kTable[] = {
-    {"Sphere", makeSphere},
-    {"Cone", makeCone},
-    {"Cylinder", makeCylinder},
-    {"Hyperboloid", makeHyperboloid},
-    {"Paraboloid", makeParaboloid},
-    {"Disk", makeDisk},
-    {"Torus", makeTorus},
-    {"Polygon", makePolygon},
-    {"GeneralPolygon", makeGeneralPolygon},
-    {"PointsPolygons", makePointsPolygons},
-    {"PointsGeneralPolygons", makePointsGeneralPolygons},
-    {"Patch", makePatch},
-    {"PatchMesh", makePatchMesh},
-    {"NuPatch", makeNuPatch},
-    {"Curves", makeCurves},
-    {"Points", makePoints},
-    {"SubdivisionMesh", makeSubdivisionMesh},
-    {"HierarchicalSubdivisionMesh", makeSubdivisionMesh},
-    {"Blobby", makeBlobby},
-};
 
 void once(Diagnostics& diag, const std::string& key, Rie code, const SourcePlace& place, const std::string& message) {
     Diagnostic d;
@@ -72,8 +47,8 @@ void fillBasis(scene::Basis& b) {
 
 ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef& given, const Matrix& toCamera, int instance,
                     Diagnostics& diag, Facing facing, const Shape* like) {
-    const Entry* entry = nullptr;
-    for (const Entry& e : kTable)
+    const Factory* entry = nullptr;
+    for (const Factory& e : kFactories)
         if (prim->kind == e.kind) entry = &e;
     if (!entry) {
         std::string what = prim->kind;
@@ -103,8 +78,8 @@ ShapeRef buildShape(const scene::PrimitiveRef& prim, const scene::AttributesRef&
     s.facing = facing;
     s.attributes = given;
     s.like = like;
-    const bool patch = prim->kind == "Patch" || prim->kind == "PatchMesh" || prim->kind == "Curves";
-    if (!given || (patch && (unset(given->ubasis) || unset(given->vbasis)))) {
+    const bool basis = scene::has(prim->kind, scene::kTakesBasis);
+    if (!given || (basis && (unset(given->ubasis) || unset(given->vbasis)))) {
         auto a = given ? std::make_shared<scene::Attributes>(*given) : std::make_shared<scene::Attributes>();
         fillBasis(a->ubasis);
         fillBasis(a->vbasis);
@@ -225,7 +200,7 @@ ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::Attributes
     if (times.size() > 1) {
         // Quadrics interpolate their parameters, not their points: keys follow the parameters.
         const PrimitiveRef last = scene::primitiveAt(p, shutter_.close);
-        if (!p->numbers.empty() && p->kind != "NuPatch" && p->kind != "Blobby" && p->numbers != last->numbers) {
+        if (scene::has(p->kind, scene::kQuadric) && p->numbers != last->numbers) {
             std::vector<float> more;
             for (size_t i = 0; i + 1 < times.size(); ++i)
                 for (int k = 0; k < 8; ++k) more.push_back(times[i] + (times[i + 1] - times[i]) * float(k) / 8);
@@ -236,7 +211,7 @@ ShapeRef FrameBuilder::geometryOf(const PrimitiveRef& p, const scene::Attributes
     std::vector<ShapeRef> keys;
     for (float t : times) {
         PrimitiveRef now = scene::primitiveAt(p, shutter_.at(t));
-        const bool pieces = p->kind == "Curves" || p->kind == "Points" || p->kind == "Blobby";
+        const bool pieces = scene::has(p->kind, scene::kPieces);
         if (pieces && times.size() > 1 && keys.empty() && now->motionKeys.empty()) { // the shutter opens between keys: isKey()
             auto first = std::make_shared<scene::Primitive>(*now);
             first->motionKeys = p->motionKeys;
@@ -304,7 +279,7 @@ scene::AttributesRef FrameBuilder::coarser(const scene::AttributesRef& a, const 
 /// (the grid of a displaced shape, the area of an emitter) differs between instances.
 bool FrameBuilder::shares(const scene::Primitive& p, const scene::Attributes* a, size_t instances) const {
     if (instances < 2 || !a || a->displacement || a->areaLight >= 0) return false;
-    if (facing_ != Facing::Ray && (p.kind == "Curves" || p.kind == "Points")) return false; // each turns to the eye
+    if (facing_ != Facing::Ray && scene::has(p.kind, scene::kTurnsToEye)) return false; // each turns to the eye
     size_t numbers = 0;
     for (const scene::Param& v : p.params)
         if (v.name == "P" || v.name == "Pw" || v.name == "Pz") numbers += v.numbers.size();

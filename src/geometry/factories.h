@@ -1,4 +1,4 @@
-// One function for each request: makes the shape, or reports an error and returns null. build.cpp has the table.
+// One function for each request: makes the shape, or reports an error and returns null. The table is below.
 #pragma once
 #include "geometry/shape.h"
 
@@ -22,5 +22,31 @@ ShapeRef makeCurves(ShapeSource, Diagnostics&);
 ShapeRef makePoints(ShapeSource, Diagnostics&);
 ShapeRef makeSubdivisionMesh(ShapeSource, Diagnostics&);
 ShapeRef makeBlobby(ShapeSource, Diagnostics&);
+
+struct Factory {
+    const char* kind; ///< scene::Primitive::kind
+    ShapeRef (*make)(ShapeSource, Diagnostics&);
+};
+inline constexpr Factory kFactories[] = {
+    {"Sphere", makeSphere},
+    {"Cone", makeCone},
+    {"Cylinder", makeCylinder},
+    {"Hyperboloid", makeHyperboloid},
+    {"Paraboloid", makeParaboloid},
+    {"Disk", makeDisk},
+    {"Torus", makeTorus},
+    {"Polygon", makePolygon},
+    {"GeneralPolygon", makeGeneralPolygon},
+    {"PointsPolygons", makePointsPolygons},
+    {"PointsGeneralPolygons", makePointsGeneralPolygons},
+    {"Patch", makePatch},
+    {"PatchMesh", makePatchMesh},
+    {"NuPatch", makeNuPatch},
+    {"Curves", makeCurves},
+    {"Points", makePoints},
+    {"SubdivisionMesh", makeSubdivisionMesh},
+    {"HierarchicalSubdivisionMesh", makeSubdivisionMesh},
+    {"Blobby", makeBlobby},
+};
 
 } // namespace alpenglow::geometry

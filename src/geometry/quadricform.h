@@ -14,14 +14,14 @@ struct QuadricForm {
         Ball,      ///< |P - centre| = radius, camera space
         Quadratic, ///< x^2 + y^2 + zz z^2 + z1 z + c = 0, object space
         Plane,     ///< z = height, object space
-        Torus      ///< object space; the line must pass the bounds of Torus::clip()
+        Ring ///< any surface in a ring about z, object space: the line must enter its ball, its slab, and not all in the hole
     } kind;
     double toObject[4][3]; ///< from camera space, rows; all but Ball
     double middle;         ///< of the surface, on the z axis: lines are measured from the point nearest to it
     double zz, z1, c, height;
     Vec3d centre;
     double radius; ///< of a ball
-    /// Torus: largest radius; relative to it half its height, the hole's radius, and the tolerance of both
+    /// Ring: largest radius; relative to it half its height, the hole's radius, and the tolerance of both
     double size, high, hole, room;
 };
 

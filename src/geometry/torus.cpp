@@ -18,7 +18,7 @@ public:
     }
     std::optional<QuadricForm> form() const override {
         std::optional<QuadricForm> f = Quadric::form();
-        if (f) f->kind = QuadricForm::Kind::Torus, f->size = size_, f->high = high_, f->hole = hole_, f->room = kRoom;
+        if (f) f->kind = QuadricForm::Kind::Ring, f->size = size_, f->high = high_, f->hole = hole_, f->room = kRoom;
         return f;
     }
 

@@ -136,7 +136,7 @@ void GridShading::aimAt(std::span<const MicropolygonShare> some) {
         const size_t first = i;
         for (; i < some.size() && some[i].key.shape == some[first].key.shape; ++i)
             work_.hits.push_back({some[i].key.prim, some[i].b1, some[i].b2, &work_.places[i], 0});
-        world_.shapes_[some[first].key.shape]->points(work_.hits, world_.footprints_ ? geometry::kNeedPartials : 0);
+        world_.shapes_[some[first].key.shape]->points(work_.hits, world_.needs_.footprints ? geometry::kNeedPartials : 0);
     }
     const uint64_t run = world_.prints_.newRun();
     for (size_t i = 0; i < some.size(); ++i) {
@@ -170,7 +170,7 @@ CameraRay GridShading::rayTo(const MicropolygonShare& s, const geometry::Surface
     r.px = int(s.key.prim);
     r.py = int(key.shape);
     r.grid = &point;
-    if (world_.footprints_) {
+    if (world_.needs_.footprints) {
         const float rate = world_.bindings_[size_t(world_.bindingOf_[s.key.shape])].shadingRate;
         const Vec2 seen = shading::footprintAt(p, {r.width, r.spread}, r.direction, length(p.P - r.origin), rate);
         const Vec2 steps = lattices_.stepsOf(s, seen);

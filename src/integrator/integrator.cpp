@@ -3,12 +3,13 @@
 #include "integrator/gridshading.h"
 #include "integrator/kernelevaluator.h"
 #include "integrator/pipeline.h"
+#include "services/table.h"
 #include <optional>
 
 namespace alpenglow::integrator {
 
 std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame> frame, const Settings& settings, Diagnostics& d) {
-    return World::build(std::move(frame), settings, makeKernelEvaluator, d);
+    return World::build(std::move(frame), settings, services::serviceTable(), makeKernelEvaluator, d);
 }
 
 struct Integrator::Impl {

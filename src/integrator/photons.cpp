@@ -87,7 +87,7 @@ std::vector<std::string> photonMapsOf(const World& world, bool all) {
     const auto& w = static_cast<const WorldImpl&>(world);
     std::set<std::string> names;
     for (const auto& [name, caustic] : namedBySurfaces(w))
-        if (all || (caustic ? w.photons_->asksCaustics : w.photons_->asksGlobal)) names.insert(name);
+        if (all || (caustic ? w.photons_->asksCaustics : w.needs_.globalPhotons)) names.insert(name);
     for (const auto& [name, place] : w.photons_->asked()) names.insert(name);
     if (!all) std::erase_if(names, [&](const std::string& n) { return w.photons_->has(n); });
     return {names.begin(), names.end()};

@@ -30,9 +30,6 @@ PhotonScatter::PhotonScatter(const StageSet& s, const VertexLobes& v, LobeSelect
       transparency_(s.transparency) {}
 
 namespace {
-/// Lobes whose value includes the cosine between the light's direction and their axis.
-bool hasCosine(const LobeKind& k) { return k.name == "diffuse" || (k.distribution && k.name != "hair"); }
-
 float least(float x) { return std::max(std::fabs(x), 1e-4f); }
 } // namespace
 
@@ -49,10 +46,11 @@ float photonFactor(const BsdfBatch& rows, BsdfBatch::Place place, const LobeKind
         const float index = so / si;
         return index * index * (least(dot(from, N)) / least(dot(to, N))) * ways;
     }
-    if (hasCosine(kind) || (kind.name == "slphong" && rows.row(place, kRowHasHorizon) != 0)) {
-        const Vec3 axis = rows.triple(place, kind.name == "slphong" ? kRowHorizon : kRowAxis);
+    const bool ofHorizon = kind.has(kCosineOfHorizon) && rows.row(place, kRowHasHorizon) != 0;
+    if (ofHorizon || kind.has(kCosineOfAxis)) {
+        const Vec3 axis = rows.triple(place, ofHorizon ? kRowHorizon : kRowAxis);
         float index = 1;
-        if (through && kind.name == "glass-ggx") {
+        if (through && kind.has(kRefracts)) {
             const float eta = std::max(rows.row(place, kRowEta), 1e-3f);
             index = dot(axis, from) < 0 ? eta : 1 / eta; // index on the side it came from over the other
         }
@@ -74,13 +72,12 @@ bool PhotonScatter::isNarrow(const LobeVertex& l, float below, const Vec3& in) c
     if (l.delta || l.below >= 0 || c_->between || !(rows.spread(l.place) < below)) return false;
     if (c_->binding->moveS || c_->bound->kernel->facts().suspends) return false;
     constexpr float kSame = 1e-3f; // between unit directions
-    if (l.kind->name == "slphong") {
+    if (l.kind->has(kAxisIsMirror)) {
         const bool has = rows.row(l.place, kRowHasHorizon) != 0;
         const Vec3 n = has ? rows.triple(l.place, kRowHorizon) : normalize(c_->points[size_t(l.point)].N);
         return length(rows.triple(l.place, kRowAxis) - (in - n * (2 * dot(in, n)))) < kSame;
     }
-    const bool facets = l.kind->distribution && l.kind->name != "hair";
-    if (!facets && l.kind->name != "specular" && l.kind->name != "phong") return false;
+    if (!l.kind->has(kSameFromBoth)) return false;
     return length(rows.triple(l.place, kRowWo) + in) < kSame;
 }
 /// Whether photons carry this light, so that it must not be sampled: it arrives via this lobe at a point that gathers photons.
@@ -316,7 +313,7 @@ void PhotonScatter::takePhotons(Sched& sched) {
 Color PhotonScatter::givenBack(const LobeVertex& l) {
     BsdfBatch& rows = requests_.rows;
     Color sum(0);
-    if (l.kind->name == "diffuse") { // the most frequent case
+    if (l.kind->has(kLambert)) { // the most frequent case
         const Vec3 axis = rows.triple(l.place, kRowAxis);
         for (const Near& photon : near_) sum += photon.light * std::max(dot(axis, photon.from), 0.f);
         return sum * float(1 / kPi);

@@ -39,7 +39,7 @@ template <class Row> DistributionParams distributionOf(const SiteInfo& s, const 
     m.roughnessv = t.roughnessv >= 0 ? f(t.roughnessv) : m.roughness;
     if (t.udir >= 0) m.udir = triple(t.udir);
     if (t.absorption >= 0) m.absorption = triple(t.absorption);
-    m.eta = Color(defaultEta(kind));
+    m.eta = Color(kind.eta);
     for (size_t k = 0; k < t.eta.size() && k < 2; ++k)
         (k ? m.k : m.eta) = t.eta[k].second == 1 ? Color(f(t.eta[k].first)) : triple(t.eta[k].first);
     for (int row : t.lobes) m.lobes.push_back(f(row));
@@ -157,7 +157,7 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
     const auto vector = [&](int row, const Vec3& fallback) { return row < 0 ? fallback : Vec3(f(row), f(row + 1), f(row + 2)); };
     params.axis = directionOr(vector(s.rows[1], Vec3()), p.surface.n);
     params.wo = directionOr(vector(s.rowWo, params.wo), params.wo);
-    params.a = l.kind->name == "slphong" ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
+    params.a = l.kind->has(kTakesExponent) ? number(s.rowExponent, 1000) : number(s.rowCone, 0);
     l.trace = s.trace.get();
     if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = directionOr(vector(s.rowHorizon, p.surface.n), p.surface.n);
     l.rays = raysOfTrace(s, f, p);

@@ -96,7 +96,7 @@ void RowShading::run(BatchContext& c) {
             c.ways[size_t(q) * n + i] = I[q];
             c.ways[size_t(3 + q) * n + i] = r.camera() ? 0 : begin[q];
         }
-        if (!world_.footprints_) continue;
+        if (!world_.needs_.footprints) continue;
         const float rate = r.camera() ? world_.bindings_[size_t(c.bindings[i])].shadingRate : 1;
         const Vec2 size = stepsAt(r, c.surfaces[i], rate);
         c.ways[6 * n + i] = size.x;

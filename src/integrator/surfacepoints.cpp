@@ -53,7 +53,7 @@ void SurfacePoints::completePoint(BatchContext& c, size_t i) {
     world_.tellTime(p);
     p.dPdtime = world_.moves_ ? world_.pointsVelocity(*p.shape, p.surface) : Vec3(0.f);
     if (r.extra >= 0) store_.fade(c.rays[i], length(p.P - r.origin));
-    if (!world_.footprints_) return;
+    if (!world_.needs_.footprints) return;
     const float rate = r.camera() ? world_.bindings_[size_t(c.bindings[i])].shadingRate : 1;
     const Vec2 steps = stepsAt(r, p.surface, rate);
     p.du = steps.x, p.dv = steps.y;

@@ -11,10 +11,8 @@ using Source = OutputVariable::Source;
 std::optional<display::Format> formatOf(const OutputSpec& s) {
     const display::DriverDescriptor* d = display::findDriver(s.type);
     const std::string driver = d ? d->names.front() : "file"; // unknown types are written by extension
-    if (driver == "png") return display::Format::Png;
-    if (driver == "jpeg") return display::Format::Jpeg;
-    if (driver == "tiff") return display::Format::Tiff;
-    if (driver == "openexr" || driver == "null" || driver == "zfile" || driver == "shadow") return {};
+    if (d && d->format) return d->format;
+    if (driver == "null" || driver == "zfile" || driver == "shadow") return {};
     return display::formatOfExtension(s.name).value_or(display::Format::Tiff);
 }
 

@@ -2,7 +2,7 @@
 #include "render/outputs.h"
 #include "scene/scene.h"
 #include <algorithm>
-#include <tuple>
+#include <string_view>
 
 namespace alpenglow::render {
 
@@ -10,11 +10,39 @@ namespace {
 
 using Source = OutputVariable::Source;
 
-constexpr std::pair<const char*, Source> kWords[] = {
-    {"direct", Source::Light},  {"indirect", Source::Light},    {"other", Source::Light},    {"albedo", Source::Albedo},
-    {"normal", Source::Normal}, {"variance", Source::Variance}, {"samples", Source::Samples}};
+/// Variance of the pixel's mean luminance, from two independently scrambled replicas: unbiased.
+float varianceOf(const Film& film, int x, int y) {
+    double sum[2];
+    uint32_t n[2];
+    for (uint32_t r = 0; r < 2; ++r) film.replica(x, y, r, &sum[r], &n[r]);
+    const double all = n[0] + n[1], away = n[0] && n[1] ? sum[0] / n[0] - sum[1] / n[1] : 0;
+    return float(all > 0 ? away * away * (n[0] / all) * (n[1] / all) : 0);
+}
+float samplesOf(const Film& film, int x, int y) { return float(film.count(x, y)); }
 
-size_t widthOf(Source s) { return s == Source::Variance || s == Source::Samples ? 1 : 3; }
+/// An output that the renderer computes: the mean of a color over the samples, or a number of the film's pixel.
+struct Computed {
+    const char* name;
+    Color integrator::SampleResult::* ofSample; ///< null: `ofPixel`
+    float (*ofPixel)(const Film&, int x, int y);
+    size_t width() const { return ofSample ? 3 : 1; }
+};
+// Part files store the index: add at the end.
+constexpr Computed kComputed[] = {{"albedo", &integrator::SampleResult::albedo, nullptr},
+                                  {"normal", &integrator::SampleResult::normal, nullptr},
+                                  {"variance", nullptr, varianceOf},
+                                  {"samples", nullptr, samplesOf}};
+
+constexpr const char* kPathWords[] = {"direct", "indirect", "other"}; ///< light paths with a name
+constexpr const char* kRgb[] = {".r", ".g", ".b"};
+
+Source sourceOf(size_t computed) { return Source(int(Source::Computed) + int(computed)); }
+/// Null: of another source.
+const Computed* computedOf(Source s) {
+    return s >= Source::Computed ? &kComputed[size_t(s) - size_t(Source::Computed)] : nullptr;
+}
+
+size_t widthOf(Source s) { return computedOf(s) ? computedOf(s)->width() : 3; }
 
 /// Index of an expression in the plan.
 int lightOf(OutputPlan& plan, const std::string& expression, const SourcePlace& place) {
@@ -30,7 +58,26 @@ std::string withoutType(const std::string& s) {
     return space == std::string::npos ? s : s.substr(space + 1);
 }
 
+std::string namesForMessages() {
+    std::string all;
+    const std::vector<std::string> names = computedOutputs();
+    for (size_t i = 0; i < names.size(); ++i) all += (i + 1 < names.size() ? ", " : " and ") + names[i];
+    return all;
+}
+
 } // namespace
+
+std::optional<Source> computedOutput(std::string_view name) {
+    for (size_t i = 0; i < std::size(kComputed); ++i)
+        if (name == kComputed[i].name) return sourceOf(i);
+    return {};
+}
+
+std::vector<std::string> computedOutputs() {
+    std::vector<std::string> names;
+    for (const Computed& c : kComputed) names.push_back(c.name);
+    return names;
+}
 
 void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, const SourcePlace& display, Diagnostics& diags) {
     v.source = Source::Engine;
@@ -41,9 +88,7 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
     const auto only = [&](Source s) { // under path only, with a fixed width
         if (!plan.basis.path)
             diags.report(Severity::Error, Rie::Incapable, place,
-                         "\"" + v.name +
-                             "\": outputs by light path, albedo, normal, variance and samples need Hider \"path\"; "
-                             "it is 0");
+                         "\"" + v.name + "\": outputs by light path" + namesForMessages() + " need Hider \"path\"; it is 0");
         if (v.channels.size() == widthOf(s)) return true;
         if (v.typed)
             diags.report(Severity::Error, Rie::Consistency, place,
@@ -62,17 +107,18 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
         return;
     }
     const std::string name = source.empty() ? v.name : withoutType(source);
-    const auto word = std::find_if(std::begin(kWords), std::end(kWords), [&](const auto& w) { return name == w.first; });
-    if (word == std::end(kWords)) {
+    const bool path = std::find(std::begin(kPathWords), std::end(kPathWords), name) != std::end(kPathWords);
+    const std::optional<Source> named = path ? Source::Light : computedOutput(name);
+    if (!named) {
         v.asked = name == v.name ? "" : name;
         return;
     }
-    if (word->second == Source::Light) v.light = lightOf(plan, *scene::lightPathOfWord(name), place);
+    if (path) v.light = lightOf(plan, *scene::lightPathOfWord(name), place);
     if (!source.empty()) {
-        v.source = word->second;
+        v.source = *named;
         only(v.source);
     } else { // a shader may have an output of that name
-        v.instead = word->second;
+        v.instead = *named;
         if (!v.typed) {
             v.color = widthOf(v.instead) == 3;
             only(v.instead);
@@ -91,45 +137,44 @@ void joinLightPaths(OutputPlan& plan, Diagnostics& diags) {
 bool OutputPlan::needsFirstSeen() const {
     return std::any_of(pictures.begin(), pictures.end(), [](const OutputSpec& p) {
         return std::any_of(p.variables.begin(), p.variables.end(), [](const OutputVariable& v) {
-            return std::max(v.source, v.instead) == Source::Albedo || std::max(v.source, v.instead) == Source::Normal;
+            const Computed* c = computedOf(std::max(v.source, v.instead));
+            return c && c->ofSample;
         });
     });
 }
 
 void addLightChannels(const OutputPlan& plan, std::vector<Channel>& c) {
-    constexpr const char* kNames[] = {".r", ".g", ".b"};
-    for (auto [source, name] : {std::pair(Source::Albedo, "albedo"), std::pair(Source::Normal, "normal")})
-        for (int k = 0; plan.needs(source) && k < 3; ++k) c.push_back({std::string(name) + kNames[k], ChannelRule::Average});
+    for (size_t i = 0; i < std::size(kComputed); ++i)
+        for (int k = 0; kComputed[i].ofSample && plan.needs(sourceOf(i)) && k < 3; ++k)
+            c.push_back({std::string(kComputed[i].name) + kRgb[k], ChannelRule::Average});
     for (int part = 0; part < plan.parts; ++part)
         for (int k = 0; k < 3; ++k)
-            c.push_back({"part." + std::to_string(part) + kNames[k], ChannelRule(int(ChannelRule::PartOfRed) + k)});
+            c.push_back({"part." + std::to_string(part) + kRgb[k], ChannelRule(int(ChannelRule::PartOfRed) + k)});
 }
 
 void addLightValues(const OutputPlan& plan, const integrator::SampleResult& s, std::vector<float>* out) {
-    if (plan.needs(Source::Albedo)) out->insert(out->end(), {s.albedo.x, s.albedo.y, s.albedo.z});
-    if (plan.needs(Source::Normal)) out->insert(out->end(), {s.normal.x, s.normal.y, s.normal.z});
+    for (size_t i = 0; i < std::size(kComputed); ++i)
+        if (kComputed[i].ofSample && plan.needs(sourceOf(i))) {
+            const Color& c = s.*kComputed[i].ofSample;
+            out->insert(out->end(), {c.x, c.y, c.z});
+        }
     for (size_t part = 0; part < size_t(plan.parts); ++part) {
         const Color c = part < s.parts.size() ? s.parts[part] : Color(0);
         out->insert(out->end(), {c.x, c.y, c.z});
     }
 }
 
-size_t lightFloats(const OutputPlan& plan) { return plan.lightParts.size() * 3 + 8; }
+size_t lightFloats(const OutputPlan& plan) {
+    size_t n = plan.lightParts.size() * 3;
+    for (const Computed& c : kComputed) n += c.width();
+    return n;
+}
 
 size_t lightFloat(const OutputPlan& plan, const OutputVariable& v) {
-    const size_t behind = plan.lightParts.size() * 3;
-    switch (v.source) {
-    case Source::Light:
-        return size_t(v.light) * 3;
-    case Source::Albedo:
-        return behind;
-    case Source::Normal:
-        return behind + 3;
-    case Source::Variance:
-        return behind + 6;
-    default:
-        return behind + 7;
-    }
+    if (v.source == Source::Light) return size_t(v.light) * 3;
+    size_t at = plan.lightParts.size() * 3;
+    for (size_t i = 0; i < std::size(kComputed) && sourceOf(i) < v.source; ++i) at += kComputed[i].width();
+    return at;
 }
 
 void addLightPixels(const OutputPlan& plan, const Film& film, int x, int y, float* to) {
@@ -139,7 +184,7 @@ void addLightPixels(const OutputPlan& plan, const Film& film, int x, int y, floa
             if (channels[i].name == name) return int(i);
         return -1;
     };
-    const int first = find("part.0.r"), albedo = find("albedo.r"), normal = find("normal.r");
+    const int first = find("part.0.r");
     std::vector<int> of;
     for (const std::vector<int>& parts : plan.lightParts)
         for (int k = 0; k < 3; ++k) {
@@ -148,15 +193,14 @@ void addLightPixels(const OutputPlan& plan, const Film& film, int x, int y, floa
                 if (first >= 0) of.push_back(first + 3 * part + k);
             *to++ = film.aov(x, y, of);
         }
-    for (int at : {albedo, normal})
+    for (const Computed& c : kComputed) {
+        if (!c.ofSample) {
+            *to++ = c.ofPixel(film, x, y);
+            continue;
+        }
+        const int at = find((c.name + std::string(kRgb[0])).c_str());
         for (int k = 0; k < 3; ++k) *to++ = at >= 0 ? film.aov(x, y, at + k) : 0;
-    // Variance of the pixel's mean luminance, from two independently scrambled replicas: unbiased.
-    double sum[2];
-    uint32_t n[2];
-    for (uint32_t r = 0; r < 2; ++r) film.replica(x, y, r, &sum[r], &n[r]);
-    const double all = n[0] + n[1], away = n[0] && n[1] ? sum[0] / n[0] - sum[1] / n[1] : 0;
-    *to++ = float(all > 0 ? away * away * (n[0] / all) * (n[1] / all) : 0);
-    *to++ = float(film.count(x, y));
+    }
 }
 
 } // namespace alpenglow::render

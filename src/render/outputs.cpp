@@ -172,10 +172,10 @@ void OutputPlan::resolve(std::vector<int> widths, Diagnostics& diags, const std:
 OutputSpec singleOutput(const std::string& file, const OutputBasis& basis, Diagnostics& diags, display::Format format) {
     using display::Format;
     if (file != "-") format = display::formatOfExtension(file).value_or(Format::Tiff);
-    const bool looked = format == Format::Png || format == Format::Jpeg;
+    const bool looked = !display::written(format).floats;
     scene::Display d;
     d.name = file;
-    d.type = format == Format::Exr ? "openexr" : format == Format::Png ? "png" : format == Format::Jpeg ? "jpeg" : "tiff";
+    d.type = display::written(format).displays.front();
     d.mode = looked ? "rgb" : "rgba";
     OutputPlan unused;
     OutputSpec s = specOf(d, {}, basis, unused, diags);

@@ -17,8 +17,9 @@ namespace alpenglow::render {
 
 /// One variable of a display.
 struct OutputVariable {
-    /// Light: by light path. Albedo, Normal: of what the camera sees first. Variance, Samples: of a pixel of Ci. Path only.
-    enum class Source { Ci, Alpha, Z, Oi, Engine, Light, Albedo, Normal, Variance, Samples };
+    /// Light: by light path. Computed and above: entries of the list of computed outputs, in its order (computedOutput()).
+    /// These are available under Hider "path" only. Part files store the number.
+    enum class Source : int { Ci, Alpha, Z, Oi, Engine, Light, Computed };
     Source source = Source::Ci;
     Source instead = Source::Engine; ///< meaning of the name if no shader has such an output; Engine: none
     std::string name;
@@ -31,6 +32,11 @@ struct OutputVariable {
     /// Whether it is a colour for viewing: Ci, or declared as a color.
     bool shown() const { return source == Source::Ci || (source != Source::Alpha && source != Source::Z && typed && color); }
 };
+
+/// The source of an output that the renderer computes, such as "samples"; nothing: there is none of this name.
+std::optional<OutputVariable::Source> computedOutput(std::string_view name);
+/// The names of all, in the order of their sources.
+std::vector<std::string> computedOutputs();
 
 /// One picture.
 struct OutputSpec {
@@ -74,7 +80,7 @@ struct OutputPlan {
     std::vector<std::vector<int>> lightParts;            ///< by expression: the parts of Ci's light that it includes
     int parts = 0;                                       ///< number of parts
     int engineFloats() const;
-    /// Whether SampleResult::albedo and normal are needed, or may be.
+    /// Whether outputs of the surfaces that the camera sees first (SampleResult) are needed, or may be.
     bool needsFirstSeen() const;
     bool needs(OutputVariable::Source) const;
     /// Whether some picture, or every picture, is a deep shadow map.
@@ -87,7 +93,8 @@ struct OutputPlan {
 /// The pictures of a frame. `file`: name by -o, which replaces the scene's displays except maps ("": the scene's displays; ri.pic
 /// if there are none).
 OutputPlan planOutputs(const scene::Options&, const RenderSettings&, bool path, const std::string& file, Diagnostics&);
-/// The picture of -o: rgba, or rgb for PNG and JPEG. The format is by extension; for "-" (standard output) it is `format`.
+/// The picture of -o: rgba, or rgb for formats without floating point. The format is by extension; for "-" (standard output) it
+/// is `format`.
 OutputSpec singleOutput(const std::string& file, const OutputBasis&, Diagnostics&, display::Format format = display::Format::Png);
 
 /// Channels of a film for the plan, in addition to colour and alpha.

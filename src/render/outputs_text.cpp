@@ -155,7 +155,8 @@ std::optional<std::pair<OutputPlan, PictureFacts>> planFromText(const std::strin
             s.quantizeAsked = p.at("quantizeAsked").get<bool>();
             for (const Json& q : p.at("variables")) {
                 OutputVariable v;
-                v.source = OutputVariable::Source(std::clamp(q.at("source").get<int>(), 0, int(OutputVariable::Source::Samples)));
+                const int last = int(OutputVariable::Source::Computed) + int(computedOutputs().size()) - 1;
+                v.source = OutputVariable::Source(std::clamp(q.at("source").get<int>(), 0, last));
                 v.name = q.at("name").get<std::string>();
                 v.engine = q.at("engine").get<int>();
                 v.light = q.at("light").get<int>();

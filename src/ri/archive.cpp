@@ -56,7 +56,7 @@ bool namedAsRib(const std::string& path) {
 
 bool namedAsZip(const std::string& path) { return zipName(path + "!").has_value(); }
 
-/// What an archive in a zip archive calls `name`: a file beside it, or at the top; "" when neither is there.
+/// What an archive in a zip archive calls `name`: a file in its folder, or at the top; "" if there is neither.
 std::string besideInZip(const ZipName& of, const std::string& name) {
     const std::vector<std::string> all = zipMembers(of.zip, limits::kZipEntries, nullptr);
     for (const fs::path& folder : {fs::path(of.member).parent_path(), fs::path()}) {

@@ -6,7 +6,7 @@ namespace alpenglow::ri {
 
 float toFloat(double d) {
     constexpr double kMax = std::numeric_limits<float>::max();
-    if (!std::isfinite(d)) return float(d); // whoever asked for a value checks that it is one
+    if (!std::isfinite(d)) return float(d); // the caller checks that the value is finite
     return d > kMax ? float(kMax) : d < -kMax ? float(-kMax) : float(d);
 }
 

@@ -32,6 +32,8 @@ struct RawParam {
     int line = 0, column = 0;
 };
 
+/// A request with its arguments. Accessors take the index of an entry of the signature; the argument must be given and have
+/// that type, which matchArguments() ensures.
 struct Call {
     const Request* request = nullptr;
     std::vector<Argument> arguments; ///< one per entry of the signature
@@ -45,8 +47,8 @@ struct Call {
     const std::string& text(size_t i) const { return arguments[i].strings[0]; }
     const std::vector<double>& numbers(size_t i) const { return arguments[i].numbers; }
     const std::vector<std::string>& strings(size_t i) const { return arguments[i].strings; }
-    std::vector<float> reals(size_t i) const;
-    std::vector<int> ints(size_t i) const;
+    std::vector<float> reals(size_t i) const; ///< as floats, clamped to +-3.4e38
+    std::vector<int> ints(size_t i) const;    ///< matched: whole and in range
     SourcePlace at(const RawParam& p) const { return {place.file, p.line, p.column}; }
 };
 

@@ -59,7 +59,7 @@ private:
                     break;
                 }
             if (op.empty()) break;
-            // The side that cannot matter is parsed but its unknown variables are nobody's error.
+            // The side that cannot matter is parsed, but unknown variables in it are no error.
             bool decided = (op == "||" && truth(a)) || (op == "&&" && !truth(a));
             quiet_ += decided;
             ConditionValue b = binary(level + 1);

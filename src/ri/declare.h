@@ -8,6 +8,7 @@
 
 namespace alpenglow::ri {
 
+/// The type of a parameter.
 struct Declaration {
     scene::Class cls = scene::Class::Uniform;
     scene::Type type = scene::Type::Float;
@@ -23,14 +24,16 @@ bool saysDouble(std::string_view text);
 /// A token of a parameter list, taken apart.
 struct Resolved {
     std::string name;
-    std::optional<Declaration> declaration; ///< empty: nobody declared it
+    std::optional<Declaration> declaration; ///< empty: not declared
     bool malformed = false;                 ///< an inline declaration that does not parse
     bool inlineForm = false;
-    bool byValue = false; ///< known, but its type is whatever the value is
+    bool byValue = false; ///< known, with the type of its value
 };
 
+/// The declared names of a stream. Not thread safe.
 class Declarations {
 public:
+    /// Declares a name, or replaces its declaration.
     void declare(const std::string& name, const Declaration& d) { user_[name] = d; }
     /// `category`: class of an Option or Attribute ("searchpath"), or "" elsewhere; its known names are looked up first.
     Resolved resolve(std::string_view token, std::string_view category) const;
@@ -39,6 +42,7 @@ private:
     std::map<std::string, Declaration, std::less<>> user_;
 };
 
+/// The words of RIB: "facevarying", "hpoint".
 const char* toString(scene::Class);
 const char* toString(scene::Type);
 

@@ -1,4 +1,4 @@
-// What an interpreter keeps of procedurals whose content waits until a ray comes to their bound.
+// State of deferred procedurals: what is needed to expand them once a ray reaches their bound.
 #pragma once
 #include "ri/interpreter.h"
 

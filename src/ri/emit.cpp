@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/motion.h"
+#include "scene/primitivekinds.h"
 #include <algorithm>
 #include <fmt/format.h>
 
@@ -89,9 +90,7 @@ void Interpreter::illuminate(const Call& call) {
 namespace {
 /// Exporters write meshes and clouds without a face or point for what is empty or hidden in their frame.
 bool holdsNothing(const scene::Primitive& p) {
-    bool mesh =
-        p.kind == "PointsPolygons" || p.kind == "PointsGeneralPolygons" || p.kind == "SubdivisionMesh" || p.kind == "Curves";
-    if (!(mesh || p.kind == "Points") || !p.ints.empty() || !p.ints2.empty() || p.params.empty()) return false;
+    if (!scene::has(p.kind, scene::kMayBeEmpty) || !p.ints.empty() || !p.ints2.empty() || p.params.empty()) return false;
     return std::all_of(p.params.begin(), p.params.end(), [](const scene::Param& q) {
         return (q.numbers.empty() && q.strings.empty()) || q.cls == scene::Class::Constant;
     });

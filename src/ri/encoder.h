@@ -1,4 +1,4 @@
-// The two forms of RIB behind RibWriter.
+// The two encodings of RIB that RibWriter uses.
 #pragma once
 #include "ri/writer.h"
 
@@ -29,7 +29,7 @@ public:
     Precision parameters = Precision::Float; ///< of parameter lists
 
 protected:
-    /// To be called now and then.
+    /// Passes output on if there is enough; call after each token.
     void spill() {
         constexpr size_t kBuffer = 64u << 10;
         if (buffer_.size() >= kBuffer) send();
@@ -43,6 +43,7 @@ private:
     bool failed_ = false, finished_ = false;
 };
 
+/// Encoders that write to the sink.
 std::unique_ptr<RibEncoder> asciiEncoder(std::unique_ptr<ByteSink>, const RibFormat&);
 std::unique_ptr<RibEncoder> binaryEncoder(std::unique_ptr<ByteSink>);
 

@@ -38,7 +38,7 @@ void Interpreter::tell(const Call& call) {
     } else if (world && world->inner) tellName("AttributeEnd", call.place);
     else if (call.request->kind == Kind::Option && archiveInWorld()) held_.push_back(call);
     else settings.executed(call);
-    if (archive) return; // it was not found, which was said
+    if (archive) return; // it was not found, which has been reported
     telling_ = true;
     perform(call);
     telling_ = false;

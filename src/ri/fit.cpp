@@ -1,6 +1,6 @@
 // The checks that let everyone downstream trust a primitive's sizes (scene/primitive.h; docs/design/ri.md).
 #include "ri/interpreter.h"
-#include "scene/counts.h"
+#include "scene/primitivekinds.h"
 #include <algorithm>
 #include <cmath>
 #include <fmt/format.h>
@@ -13,18 +13,9 @@ using scene::Param;
 using scene::Primitive;
 using scene::Type;
 
-bool isMesh(const Primitive& p) {
-    return p.kind == "PointsPolygons" || p.kind == "PointsGeneralPolygons" || p.kind == "SubdivisionMesh" ||
-           p.kind == "HierarchicalSubdivisionMesh";
-}
-bool needsPoints(const Primitive& p) {
-    return isMesh(p) || p.kind == "Polygon" || p.kind == "GeneralPolygon" || p.kind == "Patch" || p.kind == "PatchMesh" ||
-           p.kind == "NuPatch" || p.kind == "Points" || p.kind == "Curves";
-}
 bool isArgument(const Primitive& p, const Param& v) {
-    if (p.kind == "NuPatch") return v.name == "uknot" || v.name == "vknot";
-    return (p.kind == "SubdivisionMesh" || p.kind == "HierarchicalSubdivisionMesh") &&
-           (v.name == "intargs" || v.name == "floatargs" || v.name == "stringargs");
+    const scene::PrimitiveKind* kind = scene::primitiveKind(p.kind);
+    return kind && std::find(kind->arguments.begin(), kind->arguments.end(), v.name) != kind->arguments.end();
 }
 
 /// The last of a name counts (docs/design/ri.md, "Reading").
@@ -49,7 +40,7 @@ Param* position(Primitive& p, Reporter& reporter) {
         Type type;
         int per;
     } kForms[] = {{"P", Type::Point, 3}, {"Pw", Type::HPoint, 4}, {"Pz", Type::Float, 1}};
-    bool patch = p.kind == "Patch" || p.kind == "PatchMesh";
+    bool patch = scene::has(p.kind, scene::kPatch);
     const char* use = nullptr;
     for (auto& f : kForms) {
         if (f.type == Type::Float && !patch) continue;
@@ -112,7 +103,8 @@ bool fitOne(Param& v, const Primitive& p, const scene::VariableCounts& c, int64_
     int64_t per = int64_t(scene::componentCount(v.type)) * std::max(v.arrayLength, 1);
     int64_t have = int64_t(size(v)), want = c.of(v.cls);
     if (have % per == 0 && have / per == want) return true;
-    if (have % per == 0 && isMesh(p) && (v.cls == Class::Vertex || v.cls == Class::Varying) && have / per == givenPoints) {
+    if (have % per == 0 && scene::has(p.kind, scene::kMesh) && (v.cls == Class::Vertex || v.cls == Class::Varying) &&
+        have / per == givenPoints) {
         cut(v, size_t(want * per)); // as many as P had, some of them unused
         return true;
     }
@@ -145,7 +137,7 @@ bool fitVariables(Primitive& p, Reporter& reporter) {
         }
     dropDuplicates(p, reporter);
     Param* points = nullptr;
-    if (needsPoints(p) && !(points = position(p, reporter))) return false;
+    if (scene::has(p.kind, scene::kHasPoints) && !(points = position(p, reporter))) return false;
     scene::VariableCounts counts;
     std::string why;
     if (!scene::variableCounts(p, &counts, &why)) {
@@ -156,7 +148,7 @@ bool fitVariables(Primitive& p, Reporter& reporter) {
     if (points) {
         size_t per = size_t(scene::componentCount(points->type));
         given = int64_t(points->numbers.size() / per);
-        if (given < counts.vertex || (given > counts.vertex && !isMesh(p))) {
+        if (given < counts.vertex || (given > counts.vertex && !scene::has(p.kind, scene::kMesh))) {
             reporter.error(Rie::Consistency, points->place,
                            fmt::format("{}: \"{}\" needs {} points, not {}", p.kind, points->name, counts.vertex, given));
             return false;

@@ -25,14 +25,16 @@
 
 namespace alpenglow::ri {
 
+/// Blocks that a scene opens and closes.
 enum class BlockKind { Frame, World, Attribute, Transform, Solid, Object, Resource, Edit };
+/// The requests that open and close a block, such as "AttributeBegin"; for messages.
 const char* beginName(BlockKind);
 const char* endName(BlockKind);
 
 /// ErrorHandler (RISpec 3.2, 7.2).
 enum class ErrorStyle { Ignore, Print, Abort };
 
-/// What a parameter list is for: decides how strictly its counts are checked and who declares its names.
+/// The purpose of a parameter list. Decides how strictly counts are checked, and in which table names are looked up.
 enum class Use { Shader, Primitive, Option, Attribute, Hider, Display, Other };
 
 using NamedSystems = std::map<std::string, scene::Transform>;
@@ -45,7 +47,7 @@ struct GraphicsState {
     LightFilters filters;                       ///< of the lights that follow
 };
 
-/// A stored object: primitives in its own space, and what tells whether its light indices still mean something.
+/// A stored object: primitives in its own space, and what decides whether its light indices are still valid.
 struct StoredObject {
     scene::Object object;
     size_t serial = 0; ///< of its ObjectBegin
@@ -54,21 +56,26 @@ struct StoredObject {
 };
 using ObjectRef = std::shared_ptr<StoredObject>;
 
+/// Executes requests: keeps the graphics state, collects the frame, and gives complete frames to the consumer. Problems are
+/// reported, never thrown. Handlers of requests (ri/requests) call its members. Not thread safe.
 class Interpreter {
 public:
+    /// The consumer and the diagnostics must outlive it.
     Interpreter(ReaderOptions options, scene::FrameConsumer& consumer, Diagnostics& diagnostics);
 
     /// Reads a whole stream at the outermost level and closes what it leaves open.
     void readStream(std::unique_ptr<ByteSource> raw, const std::string& name);
+    /// Executes one request in the current state: checks its scope, then calls its handler, or keeps the call (holdsBack()).
     void execute(const Call& call);
     /// The end of a stream, or of a program's calls: closes what is open, with an error for each, and draws a world that is open.
     void finish(const SourcePlace& end);
-    /// What is executed now is kept for an archive, or passed over by a condition.
+    /// Whether calls are not executed now: they are kept for an inline archive, or skipped by a condition.
     bool holdsBack() const { return recording_ || passesOver(); }
-    /// By the user. What is not closed then is no error.
+    /// Whether the user has stopped the run. Blocks that are open then are no errors.
     bool interrupted() const { return settings.stop && *settings.stop; }
+    /// Whether no further requests are executed.
     bool stopped() const { return aborted() || interrupted(); }
-    /// ErrorHandler "abort" has met an error.
+    /// Whether ErrorHandler is "abort" and an error has occurred.
     bool aborted() const {
         return errorStyle_ == ErrorStyle::Abort &&
                (reporter.errors() > errorsBefore_ || reporter.errorsOfAll() > errorsOfAllBefore_);
@@ -79,7 +86,7 @@ public:
     /// RibReader::make(). deferred.cpp
     std::shared_ptr<const scene::Frame> make(const scene::Frame&, std::span<const int> which);
     void leavePrograms(); ///< RibReader::leavePrograms(). procedural.cpp
-    void endPrograms();
+    void endPrograms();   ///< RibReader::endPrograms()
 
     // --- for handlers ---
     Reporter reporter;
@@ -91,64 +98,77 @@ public:
     std::vector<double> nRGB; ///< ColorSamples: n x 3; empty = colours are RGB
 
     bool inWorld() const { return frame_ != nullptr; }
-    /// The attributes to write to; a snapshot handed out before stays as it is.
+    /// The current attributes, for changes. Earlier snapshots keep their values.
     scene::Attributes& attributes();
+    /// The current attributes, shared and immutable.
     scene::AttributesRef snapshot();
+    /// The typed parameter list of a call. Unknown names and wrong counts are reported; such parameters are left out.
+    /// `category`: the class of an Option or Attribute.
     scene::ParamList bind(const Call& call, Use use, const std::string& category = {});
-    /// A name of Option or Attribute that nobody knows: a warning, once. Of other renderers: a note. True: it has an effect.
+    /// Reports a name of Option or Attribute that is not known (a warning) or is of another renderer (a note), once. Returns
+    /// whether it has an effect.
     bool sayUnknown(bool option, const std::string& category, const scene::Param& p);
     /// The same for a parameter of Hider (true) or Display.
     bool sayUnknownParameter(bool hider, const scene::Param& p);
     /// n numbers of ColorSamples (or 3) to RGB; `numbers` may hold several colours.
     std::vector<float> toRgb(const std::vector<double>& numbers) const;
+    /// The shader call of a request with a name and parameters, with the current transformation.
     scene::ShaderRef shader(const Call& call);
 
-    /// False when the stack is full (reported): nothing was saved, its End will be ignored.
+    /// Opens a block. False if the stack is full (reported): nothing is saved, and the matching end() does nothing.
     bool begin(BlockKind kind, const Call& call);
+    /// Closes a block; one that is not open, or not the innermost, is an error.
     void end(BlockKind kind, const Call& call);
-    void worldBegin(const Call& call);
-    void objectBegin(const Call& call);
-    /// Makes the block that has just begun an object, which is in a space of its own.
+    void worldBegin(const Call& call);  ///< WorldBegin: fixes the camera, begins the frame
+    void objectBegin(const Call& call); ///< ObjectBegin
+    /// Makes the block that has just begun an object with a new space.
     ObjectRef beginObject(const std::string& handle);
-    void beginSolid(scene::SolidOperation operation, const Call& call);
-    void beginMotion(const Call& call);
-    void endMotion(const Call& call);
+    void beginSolid(scene::SolidOperation operation, const Call& call); ///< SolidBegin
+    void beginMotion(const Call& call);                                 ///< MotionBegin
+    void endMotion(const Call& call); ///< MotionEnd: joins the samples of a transformation or primitive
 
+    /// Multiplies the current transformation by m from the left, as transform requests do.
     void concat(const scene::Transform& m, const Call& call);
+    /// Replaces the current transformation.
     void replaceCtm(const scene::Transform& m, const Call& call);
+    /// Gives the current space a name: for the frame, or until the end of the attribute block (`scoped`).
     void nameSystem(const std::string& name, bool scoped);
-    /// Null when unknown. "world", "camera", "object", "current" and "shader" are known too.
+    /// From a named space to the world, before WorldBegin to the camera; nothing if the name is unknown.
+    /// "world", "camera", "object", "current" and "shader" are predefined.
     std::optional<scene::Transform> namedSystem(const std::string& name) const;
 
-    /// RIS: what a Bxdf or its like says, with the patterns that its connections mean now (scene/network.h).
+    /// RIS: the shader of a Bxdf or similar request, with the patterns that its connections name now (scene/network.h).
     scene::ShaderRef network(const Call& call, scene::Keeper);
-    void pattern(const Call& call);
-    void risLight(const Call& call);
-    void lightFilter(const Call& call);
-    void isRis() { ris_ = true; }
+    void pattern(const Call& call);     ///< Pattern
+    void risLight(const Call& call);    ///< Light
+    void lightFilter(const Call& call); ///< LightFilter
+    void isRis() { ris_ = true; }       ///< the scene has requests of RIS
     /// The shader that an Integrator sees instead of all surfaces; null: none.
     void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
     /// Whether the integrator lights a scene without lights from the eye.
     void headlight(bool on) { headlight_ = on; }
 
-    void light(const Call& call, bool area);
-    void illuminate(const Call& call);
+    void light(const Call& call, bool area); ///< LightSource, AreaLightSource
+    void illuminate(const Call& call);       ///< Illuminate
+    /// Adds a primitive of the kind of the request, with the current attributes, to the frame or the open object. Checks the
+    /// guarantees of scene::Primitive; a primitive that cannot meet them is reported and dropped.
     void emit(scene::Primitive primitive, const Call& call);
-    void instance(const Call& call);
+    void instance(const Call& call); ///< ObjectInstance
     /// An instance of an object, here.
     void place(const StoredObject& object, const SourcePlace& where);
 
-    /// The polygons of a file as primitives of this place, with these constants beside the file's own variables.
+    /// The polygons of a file as primitives of this place, with these constants in addition to the file's own variables.
     void drawModel(const std::string& name, const Call& call, const scene::ParamList& constants);
-    void volume(const Call& call);
+    void volume(const Call& call); ///< Volume
     /// Where the depth map of a repelling plane lies; the name itself when it is not there, "" when it may not be read
     /// (reported).
     std::string depthMap(const std::string& name, const SourcePlace& place);
+    /// ReadArchive: an inline archive of that name, or a file on the search path. Reported if there is none.
     void readArchive(const std::string& name, const SourcePlace& place);
     /// "DelayedReadArchive", "RunProgram" or "DynamicLoad". bound: six numbers, or none.
     void procedural(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                     const Call& call);
-    /// Content that `make` gives by calls of the C binding (ri/c), told how large it is in the picture (detail), with the
+    /// Content that `make` gives by calls of the C binding (ri/c). It gets the size in the picture (detail, pixels); the
     /// graphics state saved before and restored after. name: of the library, for messages; "" for a function of a program's own.
     void subdivide(const std::function<void(float)>& make, const std::string& name, const std::vector<float>& bound,
                    const Call& call);
@@ -157,8 +177,8 @@ public:
     /// Executes requests of our own as if they stood at the place of `call`. Their primitives get the variables `everywhere`,
     /// too.
     void expand(const std::string& requests, const Call& call, scene::ParamList everywhere = {});
-    void beginRecording(const Call& call);
-    void resource(const Call& call);
+    void beginRecording(const Call& call); ///< ArchiveBegin
+    void resource(const Call& call);       ///< Resource: saves or restores parts of the state
     /// True while the samples of a moving primitive are gathered.
     bool gatheringMotion() const { return capture_ != nullptr; }
     /// True when MakeTexture and its kin of this frame are wanted.
@@ -167,7 +187,7 @@ public:
     void setErrorStyle(ErrorStyle style);
     /// Reports once per request that it is read but has no effect.
     void incapable(const Call& call, const std::string& what);
-    void sayDouble(const SourcePlace&); ///< once: a declaration says "double"
+    void sayDouble(const SourcePlace&); ///< warns once that "double" in declarations is read as float
 
 private:
     struct Block {
@@ -182,7 +202,7 @@ private:
         ObjectRef object;                               ///< Object
         bool inner = false;                             ///< World: in another one
     };
-    /// Options that an archive gives in a world: until it is known whether it has a world of its own, they are obeyed.
+    /// Options that an archive sets in a world. They are executed unless the archive turns out to have a world itself.
     struct InnerOptions {
         size_t archive = 0; ///< index into barriers_
         scene::Options before;
@@ -235,7 +255,7 @@ private:
     bool passesOver() const { return deepConditions_ > 0 || (!conditions_.empty() && !conditions_.back().active); }
     /// Drops blocks down to this number without an end: what they saved is saved elsewhere.
     void dropBlocks(size_t count);
-    /// Does `body`, which may come here again: every so often on a stack of its own.
+    /// Runs `body`, which may recurse to here; at some depths on a new stack.
     void deeper(const std::function<void()>& body);
     /// Reads what was found: recorded calls, or a stream that messages call `file`. key tells it from other open ones.
     void readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
@@ -269,7 +289,7 @@ private:
     void noteEnded(const Block&);
     void sayUnlit(const scene::Frame&);
     // deferred.cpp
-    /// Whether a procedural may wait until a ray comes to its bound; then it is put into the frame as one that is not yet made.
+    /// Whether a procedural may be deferred until a ray reaches its bound; if so, adds it to the frame as a deferred one.
     bool waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                const Call& call);
     struct Waiting;
@@ -284,8 +304,8 @@ private:
     /// Whether one more program or library may make content here: how many there are and how deep they nest is bounded
     /// (reported).
     bool mayMake(const Call& call);
-    /// Along Option "searchpath" "procedural", --searchpath and beside the scene, under the first of these names that is there
-    /// and may be executed (X_OK) or read (R_OK); "" otherwise. looked: the folders.
+    /// Along Option "searchpath" "procedural", --searchpath and the folder of the scene, under the first of these names that is
+    /// there and may be executed (X_OK) or read (R_OK); "" otherwise. looked: the folders.
     std::string findForeign(const std::vector<std::string>& names, int access, std::string& looked) const;
     const Library* libraryOf(const std::string& name, const SourcePlace& place);
     void runLibrary(const std::string& name, const std::string& data, const std::vector<float>& bound, const Call& call);
@@ -305,7 +325,7 @@ private:
     void tell(const Call& call);
     void tellProcedural(const Call& call, const std::string& kind);
     void tellName(std::string_view request, const SourcePlace& place);
-    /// Options of an archive in the world, held back until it is known that it has no world of its own.
+    /// Options of an archive in the world, kept until it is known that it has no world itself.
     void tellHeld();
     bool conditional(const Call& call);
     bool record(const Call& call);
@@ -412,7 +432,7 @@ bool evaluateCondition(const std::string& text, const ConditionLookup& lookup, R
 /// Whether a file may be read.
 using MayRead = std::function<bool(const std::string& path)>;
 /// The path of an archive along folders: as given, then with '/' for '\', its base name, other case. "" = not found.
-/// *fallback says which liberty was taken, or is "".
+/// *fallback: the substitution that was made, for messages, or "".
 std::string findFile(const std::string& name, const std::vector<std::string>& folders, std::string* fallback, const MayRead& may);
 /// The folder that a RIB file lies in, or the zip archive that holds it; "" for the current one.
 std::string folderOf(const std::string& file);

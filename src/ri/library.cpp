@@ -51,7 +51,7 @@ std::unique_ptr<Library> Library::load(const std::string& path, std::string& why
     return nullptr;
 }
 
-/// The library of a name, loaded when it is first asked for. Null when there is none: said once.
+/// The library of a name, loaded at its first use. Null if it cannot be loaded, which is reported once.
 const Library* Interpreter::libraryOf(const std::string& name, const SourcePlace& place) {
     const auto [slot, fresh] = libraries_.try_emplace(name);
     if (!fresh) return slot->second.get();

@@ -1,4 +1,4 @@
-// Limits of this folder, beside those of base/limits.h.
+// Limits of this folder, in addition to those of base/limits.h.
 #pragma once
 #include <cstddef>
 

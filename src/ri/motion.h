@@ -8,6 +8,7 @@ using scene::at;
 using scene::compose;
 /// Key by key; *singular as for the matrix (any key).
 scene::Transform inverse(const scene::Transform& m, bool* singular = nullptr);
+/// Whether all elements are finite.
 bool finite(const Matrix& m);
 /// Keys from one rotation to another by interpolated angle, close enough (2.5 degrees) that linear interpolation between them
 /// shrinks a radius by at most 1 - cos(1.25 deg) = 0.024 %. Angles in degrees about one axis; at most 360 keys.

@@ -7,11 +7,14 @@
 
 namespace alpenglow::ri {
 
+/// Reads calls from a stream of RIB, ASCII or binary. Errors are reported with their place.
 class Parser {
 public:
+    /// `file`: name for messages. The reporter must outlive the parser.
     Parser(std::unique_ptr<ByteSource> source, std::string file, Reporter& reporter, Lexer::Comments comments = {});
     /// The next well-formed call; false at the end of the stream. Bad requests are reported and passed over.
     bool next(Call& out);
+    /// The place of the next token, and the text of a line that is still in memory ("" otherwise).
     SourcePlace here() const { return lexer_.here(); }
     std::string lineText(const SourcePlace& p) const { return lexer_.lineText(p); }
     /// Gets requests that are not in the table, as ReaderOptions::unknown.

@@ -118,9 +118,9 @@ bool Interpreter::waits(const std::string& kind, const std::vector<std::string>&
     return true;
 }
 
-/// Area in pixels of the bound's rectangle in the picture, as programs are told it; infinite where it reaches behind the eye.
-/// Negative: what is in it cannot change the picture, as only the camera may meet it and it lies outside: under hidden,
-/// without a lens or movement, displacement, lights and solids.
+/// Area in pixels of the bound's rectangle in the picture, which programs get as their level of detail; infinite if it reaches
+/// behind the eye. Negative: what is in it cannot change the picture, as only the camera may meet it and it lies outside: under
+/// hidden, without a lens or movement, displacement, lights and solids.
 double Interpreter::detailOf(const std::vector<float>& bound) const {
     if (bound.size() != 6 || !inWorld()) return INFINITY;
     scene::Options o = options;
@@ -177,7 +177,7 @@ std::string Interpreter::findForeign(const std::vector<std::string>& names, int 
     return {};
 }
 
-/// The process of a command, started when it is first asked for. Null when there is none: said once.
+/// The process of a command, started at its first request. Null if it cannot be started, which is reported once.
 Program* Interpreter::programOf(const std::string& command, const SourcePlace& place) {
     const auto [slot, fresh] = programs_.try_emplace(command);
     if (!fresh) return slot->second.get();

@@ -1,4 +1,4 @@
-// The door to ri/: RIB streams in, frames out.
+// Public interface of this folder: reads RIB streams, produces frames.
 #pragma once
 #include "base/limits.h"
 #include "base/readlog.h"
@@ -18,6 +18,7 @@ namespace alpenglow::ri {
 struct Call;
 struct Value;
 
+/// Settings of a reader; fixed after construction.
 struct ReaderOptions {
     std::vector<std::string> searchPaths; ///< folders for archives, after those of Option "searchpath" "archive"
     /// Folders for archives, and for programs and libraries of procedurals, behind all others: those that the environment names.
@@ -28,15 +29,15 @@ struct ReaderOptions {
     bool allowRead = true;               ///< archives may lie anywhere; false: below the folders that archive.cpp names
     bool regularFiles = false;           ///< readFile() refuses pipes and devices: the scene is read more than once
     size_t mostLights = limits::kLights; ///< of one frame; further ones are reported
-    /// Procedurals that nothing need meet (ri/deferred.cpp says which) stand in their frame as primitives of the kind
-    /// scene::kDeferred, until RibReader::make() is asked for what is in them. False: all are expanded where they stand.
+    /// Whether procedurals that rays may not reach (deferred.cpp has the conditions) are primitives of the kind scene::kDeferred
+    /// until RibReader::make() expands them. False: all are expanded at once.
     bool defers = false;
     bool threads = true;            ///< archives may be parsed by several threads; false: none is started
     std::vector<int> frames;        ///< only these FrameBegin numbers are rendered; empty = all. Worlds outside frames always are
     std::shared_ptr<ReadLog> reads; ///< gets every scene and archive that is read or missed; may be null
     /// Called with the number of each FrameBegin, rendered or not.
     std::function<void(int)> frameSeen;
-    /// Called for each frame on its own copy of the options, just before it is handed over: the command line has the last word.
+    /// Called for each frame on its own copy of the options, just before it is handed over: the command line takes precedence.
     std::function<void(scene::Options&)> overrides;
     /// Comments of the stream, as ReadArchive's callback gets them: kind "comment" or "structure", text after # or ##. Those
     /// inside a request and behind it come once it is executed.
@@ -61,15 +62,14 @@ public:
     bool readFile(const std::string& path); ///< "-" is standard input
     bool readMemory(std::string_view text, const std::string& name);
     bool readStream(std::istream& in, const std::string& name);
-    /// What is read next is a scene of its own. Where a world was read since the last call, the state goes back to what it was at
-    /// that call; else it stays, because what was read held options only, for all scenes behind it.
+    /// Declares that the next stream is another scene. If a world was read since the last call, the state is reset to that at the
+    /// last call. Otherwise the streams held options only, for all later scenes, and the state is kept.
     void nextScene();
-    /// While FrameConsumer::render() runs, with ReaderOptions::defers: the frame that was handed over, or that this function gave
-    /// last, with what is in some of its procedurals, which are named by scene::deferredNumber(); none named: in all, and in
-    /// those within them. Where light sources come to light that way, all are made. Null: no frame is being rendered.
+    /// While FrameConsumer::render() runs, with ReaderOptions::defers: expands deferred procedurals of the frame, or of the last
+    /// result of this function, and returns the new frame. `which`: numbers by scene::deferredNumber(); none: all, also those
+    /// inside of others. If one of them has light sources, all are expanded. Null: no frame is being rendered.
     std::shared_ptr<const scene::Frame> make(const scene::Frame&, std::span<const int> which);
-    /// In a process that began as a copy of another: programs that were started stay with that one, and are started again here
-    /// once they are asked.
+    /// For a process that was forked: programs of procedurals stay with its parent, and are started again here when needed.
     void leavePrograms();
     /// Ends the programs that were started.
     void endPrograms();

@@ -1,10 +1,11 @@
-// One reader's way to the diagnostics: adds the source line, bounds how much a hostile file can say.
+// The messages of one reader: adds the source line, and limits how many messages a file can cause.
 #pragma once
 #include "base/diagnostics.h"
 #include <functional>
 
 namespace alpenglow::ri {
 
+/// Reports to a Diagnostics, which must outlive it.
 class Reporter {
 public:
     explicit Reporter(Diagnostics& d) : sink_(d) {}
@@ -23,7 +24,7 @@ public:
     int errorsOfAll() const { return sink_.errors(); }
     /// ErrorHandler "ignore" for the whole run.
     void ignore(bool on) { sink_.ignore(on); }
-    /// Says how many messages were left out since the last call, if any.
+    /// Reports how many messages were omitted since the last call, if any.
     void flush(const SourcePlace&);
     /// Text of a line that is still at hand, for the caret; may return "".
     std::function<std::string(const SourcePlace&)> lineText;

@@ -17,7 +17,7 @@ std::string headOf(const Call&);
 /// of its words does. `Surface` is every Surface, `Surface "plastic"` those of this shader, `.*Source` lights.
 class RequestPattern {
 public:
-    /// Nothing: `error` says what is wrong.
+    /// Returns nothing after an error, with its text in `error`.
     static std::optional<RequestPattern> make(const std::string& text, std::string& error);
     /// line: of headOf(), or the name of an unknown request.
     bool matches(const std::string& line) const { return pattern_->occurs(line); }
@@ -34,7 +34,7 @@ struct FilterRules {
     };
     std::vector<int> frames;               ///< FrameBegin blocks of these numbers stay, and what is outside; empty: all
     std::vector<Call> before;              ///< put in before the first request, behind the version
-    std::vector<Replacement> replacements; ///< the first that fits counts; what is put in is not looked at again
+    std::vector<Replacement> replacements; ///< the first that fits counts; the result is not replaced again
     std::vector<RequestPattern> drop;
     std::vector<RequestPattern> only; ///< not empty: what fits none is left out
 };
@@ -64,7 +64,7 @@ private:
     std::set<int> frames_;
 };
 
-/// Requests in text. Messages go to `said`.
+/// Requests in text. Messages are added to `said`.
 std::vector<Call> requestsOf(const std::string& text, const std::string& name, Diagnostics& said);
 
 } // namespace alpenglow::ri

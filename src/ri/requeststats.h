@@ -10,6 +10,7 @@
 
 namespace alpenglow::ri {
 
+/// Counts of requests, for `alpenglow rib --stats`.
 class RequestStats {
 public:
     struct Count {
@@ -17,6 +18,7 @@ public:
         uint64_t numbers = 0; ///< in its arguments and parameters
         uint64_t bytes = 0;   ///< about what they take in binary: four for a number
     };
+    /// Counts a call, or a request that is not in the table.
     void add(const Call&);
     void addUnknown(const std::string& name, const std::vector<Value>& values);
 

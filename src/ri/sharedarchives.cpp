@@ -1,5 +1,6 @@
 // A DelayedReadArchive of shapes alone that is read again under the same attributes is an instance of what was read.
 #include "ri/interpreter.h"
+#include "scene/primitivekinds.h"
 #include "scene/scene.h"
 #include <algorithm>
 #include <iterator>
@@ -9,15 +10,10 @@ namespace alpenglow::ri {
 
 namespace {
 
-/// Requests that make shapes or place them, and depend on nothing outside of an object but attributes.
-constexpr std::string_view kShapeRequests[] = {"Polygon",   "GeneralPolygon", "PointsPolygons", "PointsGeneralPolygons",
-                                               "Patch",     "PatchMesh",      "NuPatch",        "SubdivisionMesh",
-                                               "Sphere",    "Cone",           "Cylinder",       "HierarchicalSubdivisionMesh",
-                                               "Torus",     "Disk",           "Hyperboloid",    "Paraboloid",
-                                               "Points",    "Curves",         "Blobby",         "Translate",
-                                               "Rotate",    "Scale",          "Skew",           "ConcatTransform",
-                                               "version",   "AttributeEnd",   "AttributeBegin", "TransformBegin",
-                                               "MotionEnd", "TransformEnd",   "MotionBegin",    "Geometry"};
+/// Requests that place shapes, and depend on nothing outside of an object.
+constexpr std::string_view kPlacingRequests[] = {"Translate",       "Rotate",         "Scale",        "Skew",
+                                                 "ConcatTransform", "AttributeBegin", "AttributeEnd", "MotionEnd",
+                                                 "TransformEnd",    "TransformBegin", "MotionBegin",  "version"};
 
 /// Requests that set an attribute to what they say, whatever it was before.
 constexpr std::string_view kSettingRequests[] = {"Color",
@@ -45,7 +41,7 @@ template <size_t N> bool among(const std::string_view (&names)[N], const std::st
 
 } // namespace
 
-/// What is in it is looked at when it comes for the second time.
+/// Decides, when an archive is read for the second time, whether it holds shapes alone, and whether it sets attributes.
 void Interpreter::learn(SharedArchive& of, const std::string& file) {
     of.known = true;
     const auto parsed = shelf_.take(file);
@@ -54,7 +50,7 @@ void Interpreter::learn(SharedArchive& of, const std::string& file) {
     if (!archive) return;
     for (const Call& c : archive->calls) {
         const std::string_view name = c.request->name;
-        if (among(kShapeRequests, name)) continue;
+        if (scene::has(name, scene::kSurface) || among(kPlacingRequests, name)) continue;
         if (!among(kSettingRequests, name) || (name == "Attribute" && c.text(0) == "grouping")) return;
         of.settings = true;
     }

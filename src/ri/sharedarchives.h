@@ -19,7 +19,7 @@ struct SharedArchive {
         int reads = 0;
         std::shared_ptr<StoredObject> object; ///< from the second time on
     };
-    std::map<const scene::Attributes*, Under> under; ///< null: whatever attributes, where there are none in it
+    std::map<const scene::Attributes*, Under> under; ///< null: any attributes, if the archive sets none
 };
 
 } // namespace alpenglow::ri

@@ -8,22 +8,23 @@
 
 namespace alpenglow::ri {
 
+/// Keeps parsed archives within a memory limit. Not thread safe.
 class ArchiveShelf {
 public:
     static constexpr uint64_t kArchive = 1u << 20; ///< bytes of an archive that is kept, at most
     static constexpr uint64_t kAll = 16u << 20;    ///< of all that are kept
     struct Found {
-        std::string file, key; ///< as messages call it; without links, to tell it from others
+        std::string file, key; ///< name for messages; path without links, which identifies the file
     };
-    /// What was found for a question, which is all that decides about it. Null: nothing yet, or it is no more.
+    /// The answer that was noted for a look-up (name and search path as text); null: none, or the file has gone.
     const Found* found(const std::string& question) const;
     void note(const std::string& question, Found answer) { found_.insert_or_assign(question, std::move(answer)); }
 
-    /// The requests of a file as it is now, parsed at most once. Null: it is to be read in the ordinary way, because it is too
-    /// large to keep, packed, or has something to say while it is parsed.
+    /// The requests of a file as it is now, parsed at most once. Null: read the file in the ordinary way, because it is too large
+    /// to keep, compressed, or causes messages while it is parsed.
     std::shared_ptr<const ParsedArchive> take(const std::string& file);
 
-    /// Files may have come where none were.
+    /// Forgets look-ups, after requests that may have made files.
     void forgetPlaces() { found_.clear(); }
 
 private:

@@ -12,11 +12,11 @@ namespace alpenglow::ri {
 class ByteSink {
 public:
     virtual ~ByteSink() = default;
-    /// All of these bytes. False: failure() says why.
+    /// Writes all of these bytes. Returns false after an error; failure() has the reason.
     virtual bool write(std::string_view bytes) = 0;
     /// Hands on what is held back, so that a reader at the other end of a pipe has all that was written.
     virtual bool flush() = 0;
-    /// Hands on everything and ends the stream; nothing is written behind it. False: failure() says why.
+    /// Passes everything on and ends the stream; no write() may follow. Returns false after an error; failure() has the reason.
     virtual bool finish() { return flush(); }
     /// Why a write failed, or "".
     const std::string& failure() const { return failure_; }
@@ -31,7 +31,7 @@ std::unique_ptr<ByteSink> stringSink(std::string& to);
 std::unique_ptr<ByteSink> streamSink(std::ostream&);
 /// An open descriptor, which stays open; a pipe's reader sees what was flushed.
 std::unique_ptr<ByteSink> descriptorSink(int descriptor);
-/// Creates or empties a file; a pipe of that name is written to. Null when it cannot be opened; *why says the reason.
+/// Creates or empties a file; a pipe of that name is written to. Null if it cannot be opened, with the reason in *why.
 std::unique_ptr<ByteSink> fileSink(const std::string& path, std::string* why);
 /// A file that appears when it is whole. finish() does not commit it: that is the caller's. It must outlive the sink.
 std::unique_ptr<ByteSink> outputSink(OutputFile&);

@@ -121,7 +121,7 @@ public:
         }
         size_t n = want - z_.avail_out;
         total_ += n;
-        constexpr size_t kFree = 1 << 20; // small files compress well and hurt nobody
+        constexpr size_t kFree = 1 << 20; // small files may compress well
         if (total_ > most_ || (total_ > kFree && total_ / limits::kGzipRatio > consumed_)) {
             limitHit_ = true;
             return end("the gzip data inflates beyond the limit");

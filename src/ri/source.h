@@ -1,4 +1,4 @@
-// Where a RIB stream's bytes come from: memory, a file, an istream, each possibly gzip-compressed.
+// Sources of the bytes of a RIB stream: memory, a file, an istream, each possibly gzip-compressed.
 #pragma once
 #include "base/limits.h"
 #include "base/stopflag.h"

@@ -15,7 +15,7 @@ double growth(const Matrix& m, int column) {
 } // namespace
 
 bool takeProjection(scene::Transform& worldToCamera, scene::Options& o) {
-    constexpr double kNoise = 1e-6; // what is left of inverses in single precision
+    constexpr double kNoise = 1e-6; // rounding of inverses in single precision
     if (o.projection == "perspective") return false;
     const Matrix first = worldToCamera.first();
     if (!(growth(first, 3) > kNoise * std::fabs(first.m[3][3])) || growth(first, 3) < kNoise) return false;

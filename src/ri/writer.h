@@ -36,13 +36,13 @@ public:
     void comment(std::string_view text);
     /// A structure comment, without the "##" (RISpec 3.2, appendix D).
     void structure(std::string_view text);
-    /// Text that is RIB already, as it is, in lines of its own: RiArchiveRecord "verbatim".
+    /// Text that is RIB already, unchanged, in separate lines: RiArchiveRecord "verbatim".
     void verbatim(std::string_view text);
-    /// Hands on what is held back. False: writing failed.
+    /// Passes buffered output on. False: writing failed.
     bool flush();
-    /// Ends the stream. False: something could not be written, now or before; failure() says why.
+    /// Ends the stream. Returns false if something could not be written, now or before; failure() has the reason.
     bool finish();
-    const std::string& failure() const;
+    const std::string& failure() const; ///< the reason of a failure, for messages; "" if there was none
     /// Bytes so far, before gzip.
     uint64_t bytes() const;
 

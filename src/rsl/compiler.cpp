@@ -148,7 +148,7 @@ ShaderPtr ShaderCompiler::load(const std::string& name, const std::vector<std::s
     ShaderPtr result;
     try {
         result = find(name, directories, diagnostics);
-    } catch (...) { // whoever waits for the same shader gets an answer, and the next request tries again
+    } catch (...) { // threads that wait for the same shader get an answer; the next request tries again
         promise.set_value(nullptr);
         std::lock_guard lock(state_->mutex);
         state_->shaders.erase(key);
@@ -208,7 +208,7 @@ ShaderPtr ShaderCompiler::find(const std::string& name, const std::vector<std::s
 
 ShaderPtr ShaderCompiler::loadText(const std::string& text, const std::string& name, Diagnostics& diagnostics) {
     FrontOptions options = state_->front();
-    options.includePaths = state_->settings.pluginPaths; // beside a text there is nothing
+    options.includePaths = state_->settings.pluginPaths; // a text has no folder
     auto program = compileText(text, name, options, diagnostics);
     sayWithoutShader(program.get(), name, diagnostics);
     return finish(std::move(program), name, {}, text);

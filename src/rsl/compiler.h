@@ -21,7 +21,7 @@ struct ParameterInfo {
     bool output = false;
     bool hasDefault = false;
     Place place;
-    bool open = false;          ///< an array of open length, `float w[]`: it is as long as what it is given
+    bool open = false;          ///< an array of open length, `float w[]`: as long as its value
     bool handle = false;        ///< of type `shader`
     bool sampleDefault = false; ///< varying, with a default that differs from sample to sample: computed where the shader begins
     std::vector<std::string> defaultReads; ///< parameters before it that its default reads
@@ -44,16 +44,17 @@ public:
 private:
     friend class ShaderCompiler;
     std::string path_;
-    std::string source_; ///< digest of everything that the source says
+    std::string source_; ///< digest of the source
     std::string digest_; ///< of that and of which of its shaders this is
     std::shared_ptr<const Program> program_;
     const Shader* shader_ = nullptr;
     std::vector<ParameterInfo> parameters_;
 };
 
-/// Sixteen numbers, row by row, of the matrix that an input "space:FROM>TO" stands for. False: unknown (identity is taken).
+/// Sixteen numbers, row by row, of the matrix of an input "space:FROM>TO". False: unknown (identity is taken).
 using SpaceFn = std::function<bool(const std::string& from, const std::string& to, float matrix[16])>;
 
+/// Counters of a compiler since its construction.
 struct CompilerStatistics {
     int compiled = 0; ///< kernels for which code was generated
     int fromDisk = 0; ///< kernels from the disk cache
@@ -61,7 +62,8 @@ struct CompilerStatistics {
     double seconds = 0; ///< of building, optimising and code generation, summed over threads
 };
 
-/// Thread safe. Kernels live as long as someone holds them or the compiler does.
+/// Loads shaders and compiles them into kernels, with a cache in memory and on disk. Thread safe. Kernels live as long as the
+/// compiler or a pointer to them.
 class ShaderCompiler {
 public:
     struct Settings {
@@ -70,19 +72,20 @@ public:
         std::vector<std::pair<std::string, std::string>> defines;
         std::string dialect;                  ///< whose macros are predefined: FrontOptions::dialect
         bool rispecSpecular = false;          ///< FrontOptions::rispecSpecular
-        bool lint = false;                    ///< the warnings for who writes shaders (front/lint.h)
+        bool lint = false;                    ///< warnings for authors of shaders (front/lint.h)
         bool allowExec = false;               ///< `plugin "name"` loads code (rsl/plugins.h); else it is an error that says so
-        std::vector<std::string> pluginPaths; ///< where plug-ins are looked for, after the folder of the shader
+        std::vector<std::string> pluginPaths; ///< where plug-ins are searched, after the folder of the shader
         std::shared_ptr<ReadLog> reads;       ///< gets every source that is read or missed; may be null
     };
     ShaderCompiler();
     explicit ShaderCompiler(Settings);
     ~ShaderCompiler();
 
-    /// Finds NAME or NAME.sl in the directories, in order; includes are looked for beside the file, then in the directories. The
-    /// shader of that name in the file, else the first. Null after an error; an error is reported the first time a name is asked
-    /// for. A compiled shader of another renderer (.slo, .sdl, .sdr, .slx, .sdw) without its source is an error that names the
-    /// missing source. What memory and file system throw passes through; the next request for the name then tries again.
+    /// Finds NAME or NAME.sl in the directories, in order; includes are searched in the folder of the file, then in the
+    /// directories. The shader of that name in the file, else the first. Null after an error; an error is reported the first time
+    /// a name is asked for. A compiled shader of another renderer (.slo, .sdl, .sdr, .slx, .sdw) without its source is an error
+    /// that names the missing source. What memory and file system throw passes through; the next request for the name then tries
+    /// again.
     std::shared_ptr<const CompiledShader> load(const std::string& name, const std::vector<std::string>& directories,
                                                Diagnostics&);
     /// The first shader of a text. Not kept.
@@ -109,12 +112,12 @@ public:
     std::vector<ParameterValue> parameterValues(const std::shared_ptr<const CompiledShader>&, Diagnostics&,
                                                 const SpaceFn& spaces = {}, const std::vector<ParameterValue>& given = {});
 
-    /// Our IR after the passes, as text; with `llvm` also the optimised LLVM IR. Empty after an error.
+    /// The IR after the passes, as text; with `llvm` also the optimised LLVM IR. Empty after an error.
     std::string dump(const std::shared_ptr<const CompiledShader>&, const KernelOptions&, Diagnostics&, bool llvm = false);
     /// What the passes find out about a shader under these options, without generating code.
     std::unique_ptr<ir::Kernel> analyse(const CompiledShader&, const KernelOptions&, Diagnostics&) const;
 
-    CompilerStatistics statistics() const;
+    CompilerStatistics statistics() const; ///< so far, of all threads
 
 private:
     std::shared_ptr<const CompiledShader> find(const std::string& name, const std::vector<std::string>& directories,

@@ -7,6 +7,7 @@
 
 namespace alpenglow::rsl {
 
+/// The result of readsOfDefault().
 struct DefaultReads {
     bool sample = false;              ///< it differs from sample to sample: it reads a global variable, or draws a random number
     bool object = false;              ///< it names the space "object", which is another for each primitive

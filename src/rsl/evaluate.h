@@ -5,7 +5,7 @@
 
 namespace alpenglow::rsl {
 
-/// What the predefined variables are at the one point:
+/// The values of the predefined variables at the point:
 ///   u = v = s = t = 0.5, du = dv = 1, dtime = 0, time = 0, ncomps = 3, alpha = 1
 ///   P = (0,0,0), dPdu = (1,0,0), dPdv = (0,1,0), N = Ng = (0,0,1), dPdtime = 0, I = (0,0,1), E = (0,0,-1) = P - I
 ///   Cs = Os = Oi = 1, Ci = 0
@@ -17,6 +17,7 @@ struct EvaluationPoint {
     static bool value(const std::string& name, int component, int part, float& out);
 };
 
+/// The result of evaluate().
 struct Evaluation {
     bool ok = false;
     Type type; ///< of the expression; Void when it was a statement
@@ -25,8 +26,8 @@ struct Evaluation {
     std::string printed; ///< by printf()
 };
 
-/// As ServiceFn, of a kernel; false: not answered, and nothing written. What this folder does not know, maps and rays, the caller
-/// may.
+/// A ServiceFn for a kernel, by which the caller answers what this folder cannot, such as maps. Returns false if it does not
+/// answer the call and has written nothing.
 using AnswerFn = std::function<bool(const CompiledKernel&, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
                                     const float* in, float* out)>;
 

@@ -1,4 +1,4 @@
-// The one door between generated code and the renderer. Plain C layout: generated code knows these offsets.
+// The interface between generated code and the renderer. Plain C layout: generated code knows these offsets.
 #pragma once
 #include "base/limits.h"
 #include "base/stopflag.h"
@@ -23,7 +23,7 @@ using ServiceFn = void (*)(KernelCall*, int32_t site, int32_t first, uint64_t ma
 
 /// Steps of an illuminance loop, in this order: begin gives the number of lights (the same for all lanes of the strip), then for
 /// each light: fetch writes L, Cl, Ol (nine rows of W floats) and returns the mask of the lanes the body runs for; then end, also
-/// when the loop is left early. Loops stand in each other: what is fetched and ended is of the one begun last in the strip.
+/// when the loop is left early. Loops nest: fetch and end refer to the one that was begun last in the strip.
 struct KernelCall {
     const float* const* in; ///< per Kernel::inputs: varying: component c, jet part j at in[k] + (c * parts + j) * stride;
                             ///< uniform (build S): in[k][c], arrays in[k][e * components + c]
@@ -97,7 +97,7 @@ struct CoShader {
     std::map<std::string, std::string> strings;
     std::vector<std::string> computed; ///< KernelOptions::computedParameters of this one
     std::string space;                 ///< what the renderer calls its "shader" space; empty: that of the shader that calls
-    bool light = false;                ///< a light of the scene: what it sends and its outputs are the renderer's to say
+    bool light = false;                ///< a light of the scene: the renderer determines its light and outputs
 };
 
 /// A parameter that gather() statements may send texts to, or an array whose length is open: InputName::sent.

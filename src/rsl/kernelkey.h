@@ -5,10 +5,10 @@
 
 namespace alpenglow::rsl {
 
-/// Everything that the descriptors of shadeops say and that decides about code.
+/// Everything in the descriptors of shadeops that affects code.
 const std::string& descriptorDigest();
 
-/// What the co-shaders are and what their parameters say: all of it is in the code.
+/// The co-shaders and the values of their parameters, which are part of the code.
 std::string coShaderKey(const KernelOptions&);
 
 } // namespace alpenglow::rsl

@@ -133,7 +133,7 @@ bool movesPoints(const Program& program, const Shader& shader, KernelOptions opt
                  const std::map<std::string, std::vector<float>>& numbers) {
     options.outputs = {"P"};
     fixParameters(options, numbers);
-    Diagnostics quiet; // the kernel has said it
+    Diagnostics quiet; // compiling the kernel has reported it
     const auto kernel = buildKernel(program, shader, options, quiet);
     if (!kernel) return true;
     ir::simplify(*kernel, options);

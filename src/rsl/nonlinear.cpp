@@ -27,7 +27,7 @@ std::string without(std::string why, int line) {
 
 std::vector<Diagnostic> nonlinearUses(const Program& program, const Shader& shader, KernelOptions options) {
     options.path = true;
-    Diagnostics quiet; // what there is to say besides is said when the kernel is made
+    Diagnostics quiet; // other messages are reported when the kernel is made
     const auto kernel = buildKernel(program, shader, options, quiet);
     std::vector<Diagnostic> all;
     if (!kernel) return all;

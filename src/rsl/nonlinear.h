@@ -1,5 +1,5 @@
-// Where a surface shader cannot be split from the light it asks for: the warnings "not-affine" of `compile -W` and of the
-// language server.
+// Places where a surface shader cannot be separated from the light that it requests: the warnings "not-affine" of `compile -W`
+// and of the language server.
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/kernel.h"

@@ -1,4 +1,5 @@
-// RSL plug-ins (include/alpenglow/rslplugin.h): finding, loading, checking, and the addresses that machine code asks for by name.
+// RSL plug-ins (include/alpenglow/rslplugin.h): finding, loading, checking, and the addresses of functions that machine code
+// calls by name.
 #pragma once
 #include "rsl/front/plugin.h"
 #include <map>
@@ -10,7 +11,7 @@ namespace alpenglow::rsl {
 class PluginLibrary {
 public:
     /// NAME as a file, or NAME.so or libNAME.so in one of the folders, loaded. Null with the reason: nothing of that name, no
-    /// plug-in, another version of the header, a signature that says nothing or does not fit its function. The same file is
+    /// plug-in, another version of the header, a signature that is empty or does not fit its function. The same file is
     /// loaded once.
     std::shared_ptr<const Plugin> load(const std::string& name, const std::vector<std::string>& folders, std::string& why,
                                        std::string& hint);

@@ -22,7 +22,7 @@ struct PrintKey {
     int64_t sample = -1; ///< -1: before all samples (dicing)
     int32_t y = 0, x = 0;
     int32_t bounces = 0;
-    uint32_t vertex = 0;          ///< hash of the way to the point
+    uint32_t vertex = 0;          ///< hash of the path to the point
     std::string program;          ///< file of the shader
     std::array<float, 3> place{}; ///< the point: shaders of lights run for several of one vertex
     /// Of the call in the shader: file, line and column. It orders nothing: messages of one run stay in their order.
@@ -45,7 +45,7 @@ public:
     /// more than limits::kPrintRuns of these, or no room for them, everything is written first: the order then holds within each
     /// part.
     void add(const PrintKey&, const std::string& text);
-    uint64_t newRun() { return ++runsBegun_; } ///< a PrintKey::run that nobody has had
+    uint64_t newRun() { return ++runsBegun_; } ///< a PrintKey::run that has not been used
     /// The same for what construct() prints, which runs once for a shader by the book and here in every run of its code: a text
     /// of one place (`where`, any name for it) is kept once, before all samples, and discard() does not forget it. Beyond
     /// limits::kPrintBytes of them no more are kept.

@@ -29,7 +29,7 @@ public:
 private:
     bool reserve(std::vector<float>&, size_t numbers);
     size_t most_, bytes_ = 0;
-    std::unordered_map<uint64_t, std::vector<float>> elements_; ///< by array and point: those behind its storage
+    std::unordered_map<uint64_t, std::vector<float>> elements_; ///< by array and point: those beyond its storage
 };
 
 } // namespace alpenglow::rsl

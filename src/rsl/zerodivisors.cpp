@@ -54,7 +54,7 @@ void fixParameters(KernelOptions& options, const std::map<std::string, std::vect
 std::vector<SourcePlace> divisionsByZero(const Program& program, const Shader& shader, KernelOptions options,
                                          const std::map<std::string, std::vector<float>>& numbers) {
     fixParameters(options, numbers);
-    Diagnostics quiet, said; // the kernel has said the rest
+    Diagnostics quiet, said; // compiling the kernel has reported the others
     std::vector<SourcePlace> places;
     const auto kernel = buildKernel(program, shader, options, quiet);
     if (!kernel) return places;

@@ -1,4 +1,4 @@
-// A frame that is looked at from elsewhere, too.
+// A frame that is also seen by another camera.
 #pragma once
 
 namespace alpenglow::scene {

@@ -1,4 +1,4 @@
-// Procedurals whose content is not yet made: they stand among the primitives of a frame, and give way to what is in them once
+// Deferred procedurals: primitives of a frame that are replaced by their content once
 // a ray comes to their bound.
 #pragma once
 #include "scene/primitive.h"

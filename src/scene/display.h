@@ -1,19 +1,22 @@
-// Where a picture goes.
+// The Display request and the options of displays.
 #pragma once
 #include "scene/param.h"
 #include <string>
 
 namespace alpenglow::scene {
 
+/// PixelFilter: the name and the widths in pixels.
 struct PixelFilter {
     std::string name = "gaussian";
     float xwidth = 2, ywidth = 2;
 };
+/// Quantize; one = 0: floating point.
 struct Quantize {
     float one = 0, min = 0, max = 0, dither = 0;
-    bool set = false;
+    bool set = false; ///< the scene has set it
 };
 
+/// One Display request.
 struct Display {
     std::string name = "ri.pic", type = "file", mode = "rgba";
     ParamList params; ///< "quantize", "exposure", "filter", "filterwidth", "dither" etc.

@@ -1,4 +1,4 @@
-// Light path expressions: which light an output of a frame shows, by what happened to it on its way from the camera to the light.
+// Light path expressions: which light an output of a frame shows, by the events on its path from the camera to the light.
 // All expressions of a frame are one automaton: a path carries a number, and every event takes it to the next. docs/lightpaths.md
 // Sources: Heckbert's regular expressions for paths (SIGGRAPH 1990), in the notation of OSL and PRMan.
 #pragma once
@@ -22,12 +22,12 @@ enum class PathEvent : uint8_t {
     Sky,    ///< a light without a place; "L" is this, too
     Object  ///< what a surface gives by itself
 };
-/// How a surface scattered: D G S s; None for what is no scattering.
+/// How a surface scattered: D G S s; None: no scattering.
 enum class PathScattering : uint8_t { None, Diffuse, Glossy, Singular, Straight };
 
 /// The text of an expression where `source` is one ("lpe:C<RD>L", "color lpe:..."), without what stands before it; else nothing.
 std::optional<std::string> lightPathIn(const std::string& source);
-/// The expression that a word stands for: "direct", "indirect"; "other" is a word without an expression. Else nothing.
+/// The expression of a word: "direct", "indirect"; "other" is a word without an expression. Else nothing.
 std::optional<std::string> lightPathOfWord(std::string_view word);
 
 class LightPaths {
@@ -43,7 +43,7 @@ public:
     static constexpr int kMostDepth = 64;       ///< parentheses in parentheses
 
     using State = uint16_t;
-    static constexpr State kNone = 0; ///< of light that is nobody's: next() keeps it
+    static constexpr State kNone = 0; ///< of unclassified light: next() keeps it
     static constexpr State kDead = 1; ///< no expression can match any more
 
     /// "other": all that no expression of the frame matches.

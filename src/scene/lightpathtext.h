@@ -1,4 +1,4 @@
-// A light path expression, read: the places where an event may stand, and what may follow what.
+// A parsed light path expression: the positions of events, and which positions may follow each.
 #pragma once
 #include "scene/lightpaths.h"
 #include <bitset>
@@ -10,18 +10,21 @@ struct PathEvents {
     uint8_t events = 0xff, scatterings = 0xff;
     std::vector<std::string> labels; ///< one of them; empty: any event
     bool notLabels = false;          ///< none of them
+    /// Whether an event with these labels is in the set.
     bool has(PathEvent, PathScattering, std::span<const std::string> carried) const;
 };
 
-/// Where one event of the path stands.
+/// A position in the expression.
 struct PathPosition {
     std::vector<PathEvents> any; ///< it is in one of these
     bool negated = false;        ///< or in none
+    /// Whether an event with these labels may be at the position.
     bool has(PathEvent, PathScattering, std::span<const std::string> carried) const;
 };
 
 using PathPositions = std::bitset<LightPaths::kMostPositions>;
 
+/// A parsed expression.
 struct LightPathText {
     std::vector<PathPosition> positions;
     PathPositions first, last;         ///< where a path may begin and end
@@ -30,7 +33,7 @@ struct LightPathText {
     bool straight = false;             ///< it names s; else straight passages are as if they were not there
 };
 
-/// Reads an expression. `room`: positions that it may have. Nothing: it is wrong, which was reported.
+/// Reads an expression. `room`: positions that it may have. Returns nothing after an error, which is reported.
 std::optional<LightPathText> readLightPath(const std::string& text, size_t room, const SourcePlace&, Diagnostics&);
 
 } // namespace alpenglow::scene

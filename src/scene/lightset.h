@@ -64,7 +64,7 @@ public:
             runs_.insert(std::next(run), {light + 1, was.second});
         }
     }
-    /// Takes out what is not below `end`.
+    /// Removes indices from `end` on.
     void keepBelow(int end) {
         while (!runs_.empty() && runs_.back().first >= end) runs_.pop_back();
         if (!runs_.empty()) runs_.back().second = std::min(runs_.back().second, end);
@@ -110,7 +110,7 @@ public:
     bool operator==(const std::vector<int>& o) const { return std::equal(begin(), end(), o.begin(), o.end()); }
 
 private:
-    /// The first run that begins behind a light.
+    /// The first run that begins after a light.
     template <class Iterator> static Iterator after(Iterator first, Iterator last, int light) {
         return std::upper_bound(first, last, light, [](int l, const Run& r) { return l < r.first; });
     }

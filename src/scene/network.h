@@ -22,15 +22,17 @@ struct Connection {
 Param connectionParam(const Connection&);
 /// What connectionParam() made; nothing for any other parameter.
 std::optional<Connection> connectionOf(const Param&);
+/// All connections of a call, in the order of its parameters.
 std::vector<Connection> connectionsOf(const ShaderCall&);
 
-/// Who keeps patterns as they were when its request stood, whatever their handles mean later.
+/// Requests that keep the patterns that their connections named when they were read; later patterns of the same handles do not
+/// affect them.
 enum class Keeper { Surface, Displacement, Interior, Light };
 /// Key of Attributes::coshaders of a pattern that is kept.
 std::string keptHandle(Keeper, std::string_view handle);
 /// Whether a key of Attributes::coshaders is one: those are no co-shaders that getshaders() gives.
 bool isKept(std::string_view key);
-/// The handle as the scene has it.
+/// The handle in the scene that a key stands for.
 std::string_view plainHandle(std::string_view key);
 
 } // namespace alpenglow::scene

@@ -39,7 +39,7 @@ struct Attributes {
     /// The nine arrays of TrimCurve as params named ncurves, order, knot, min, max, n, u, v, w.
     std::shared_ptr<const ParamList> trimCurve;
     // State of the renderer, which no request names.
-    std::vector<SolidStep> solid; ///< the blocks of SolidBegin around what is made now, from the outermost (scene/solids.h)
+    std::vector<SolidStep> solid; ///< the open blocks of SolidBegin, from the outermost (scene/solids.h)
     int solidChildren = 0;        ///< blocks and parts that the innermost of them has had
     std::string part;             ///< scene::partOf() (scene/deferred.h)
     /// Between levels of detail: what is made is there for samples whose own number in [0, 1) is at least the first and below
@@ -67,7 +67,7 @@ using AttributesRef = std::shared_ptr<const Attributes>;
 ///   Volume: strings[0] = type, numbers = bound, ints = dimensions.
 /// Moving primitives hold one Primitive per key in `motionKeys` after the first, with times in motionTimes.
 ///
-/// What ri/ guarantees, so that nobody need look again (scene/counts.h has the counts, docs/design/ri.md):
+/// What ri/ guarantees, so that no other code has to check it (scene/counts.h has the counts, docs/design/ri.md):
 /// - The arguments agree with each other: sums of counts match index arrays, indices are not negative, knots do not decrease,
 ///   meshes fit the steps of their bases. Numbers are finite. PatchMesh and Patch types are "bilinear" or "bicubic".
 /// - Polygons, meshes, patches, curves and points have exactly one of "P", "Pw" (HPoint), "Pz" (Float; patches only), class

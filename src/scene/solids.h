@@ -1,4 +1,4 @@
-// Where a primitive stands in a solid (RISpec 3.2, "Solids"): a path from the outermost SolidBegin to the part that it bounds,
+// The position of a primitive in a solid (RISpec 3.2, "Solids"): a path from the outermost SolidBegin to the part that it bounds,
 // kept among its attributes, so that instances have it as well.
 #pragma once
 #include "scene/primitive.h"

@@ -4,6 +4,7 @@
 
 namespace alpenglow::scene {
 
+/// The argument of SolidBegin; Part: "primitive".
 enum class SolidOperation { Part, Union, Intersection, Difference };
 
 /// One SolidBegin around a primitive. id: its number in the scene; child: which of the block around it, from 0.

@@ -7,61 +7,18 @@ namespace alpenglow::services {
 
 void Services::service(KernelRun& c, int site, int first, uint64_t mask, int lanes, const float* in, float* out) {
     const ServiceCall call(c, diagnostics_, site, first, mask, lanes, in, out);
-    switch (call.s.kind) {
-    case SiteKind::Texture:
-    case SiteKind::Environment:
-        return answerTexture(*this, call);
-    case SiteKind::Shadow:
-        return answerShadow(*this, call);
-    case SiteKind::TextureInfo:
-        return answerTextureInfo(*this, call);
-    case SiteKind::Photons:
-        return answerPhotons(*this, call);
-    case SiteKind::SkySamples:
-        return answerSky(*this, call);
-    case SiteKind::Bake:
-    case SiteKind::Bake3d:
-        return answerBake(*this, call);
-    case SiteKind::Texture3d:
-        return answerTexture3d(*this, call);
+    if (call.s.service) return call.s.service->answer(*this, call);
+    switch (call.s.kind) { // what a request becomes where it is answered at once
     case SiteKind::PointHemisphere:
         return answerPointHemisphere(*this, call);
     case SiteKind::PointSubsurface:
         return answerPointSubsurface(*this, call);
-    case SiteKind::Ptexture:
-        return answerPtexture(*this, call);
     case SiteKind::Irradiance:
         return answerIrradiance(*this, call);
     case SiteKind::GatherIteration:
         return answerGatherIteration(call);
     case SiteKind::Ambient:
         return sumAmbient(call);
-    case SiteKind::LightSource:
-        return answerLightSource(*this, call);
-    case SiteKind::LightSetup:
-        return lightSetup(c, site, first, lanes, in);
-    case SiteKind::LightHandles:
-        return lightHandles(call);
-    case SiteKind::Message:
-        return answerMessage(*this, call);
-    case SiteKind::Attribute:
-        return answerAttribute(*this, call);
-    case SiteKind::ShaderName:
-        return answerShaderName(*this, call);
-    case SiteKind::PrimitiveVariable:
-        return answerPrimitiveVariable(call);
-    case SiteKind::Option:
-        return answerOption(*this, call);
-    case SiteKind::RendererInfo:
-    case SiteKind::RayInfo:
-    case SiteKind::RayLevel:
-        return answerRay(call);
-    case SiteKind::Depth:
-        return answerDepth(call);
-    case SiteKind::Transform:
-        return transformBetween(call);
-    case SiteKind::Random:
-        return drawRandom(call);
     default:
         break;
     }

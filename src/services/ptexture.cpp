@@ -1,7 +1,7 @@
 // ptexture(): lookups in files with a picture for each face.
 #include "geometry/faceplace.h"
+#include "ptex/filter.h"
 #include "services/services.h"
-#include "world/ptexsite.h"
 #include "world/ptexstore.h"
 #include <algorithm>
 #include <cmath>
@@ -9,6 +9,59 @@
 namespace alpenglow::services {
 
 namespace {
+
+/// Argument rows, or -1.
+struct PtexSite final : ServiceSite {
+    bool computed = false; ///< file name computed for each point, in row 0; else SiteInfo::nameId
+    int channel = -1, face = -1;
+    std::vector<int> rows; ///< s, t and their differences (ds/dx, dt/dx, ds/dy, dt/dy); or eight numbers: four corners
+    bool own = false;      ///< no coordinates given: uses those of the face, if any
+    int count = 1;
+    int fill = -1, width = -1, swidth = -1, twidth = -1, blur = -1, sblur = -1, tblur = -1;
+    ptex::Kernel kernel = ptex::Kernel::Gaussian;
+};
+
+/// Finds the rows of a call's arguments.
+void bindPtexture(SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& world) {
+    auto p = std::make_shared<PtexSite>();
+    const rsl::ir::Site& s = *i.site;
+    const auto row = [&](const char* name) {
+        const auto f = i.named.find(name);
+        return f == i.named.end() ? -1 : f->second;
+    };
+    p->computed = (s.strings.empty() || s.strings[0].empty()) && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
+    std::vector<int> given(i.rows.begin() + (p->computed && !i.rows.empty()), i.rows.end());
+    if (given.size() >= 2) {
+        p->channel = given[0];
+        p->face = given[1];
+        p->rows.assign(given.begin() + 2, given.end());
+    }
+    p->own = p->rows.size() == 7; // build_service.cpp
+    p->count = s.resultKinds.empty() ? 1 : std::min(rsl::ir::components(s.resultKinds[0]), 3);
+    p->fill = row("fill");
+    p->width = row("width");
+    p->swidth = row("swidth");
+    p->twidth = row("twidth");
+    p->blur = row("blur");
+    p->sblur = row("sblur");
+    p->tblur = row("tblur");
+    if (const auto f = i.text.find("filter"); f != i.text.end()) {
+        const std::string& name = f->second;
+        if (name == "box") p->kernel = ptex::Kernel::Box;
+        else if (name == "triangle" || name == "bilinear") p->kernel = ptex::Kernel::Triangle;
+        else if (name == "point") p->kernel = ptex::Kernel::Point;
+        else if (name != "gaussian" && name != "default")
+            world.diagnostics_->reportOnce(
+                "ptexture:" + name,
+                {Severity::Warning,
+                 Rie::Unimplement,
+                 {s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line, s.place.column},
+                 "ptexture(): there is no filter \"" + name + "\"; gaussian is used",
+                 "filters are gaussian, triangle, box and point",
+                 {}});
+    }
+    i.resolved = std::move(p);
+}
 
 /// Converts a step in space to u and v of a face.
 Vec2 stepOnFace(const geometry::FacePlace& f, const Vec3& step) {
@@ -53,8 +106,8 @@ const ptex::Texture* Services::ptexOf(int32_t id, const ServiceCall& call) {
     return at->second;
 }
 
-void answerPtexture(Services& answers, const ServiceCall& call) {
-    const PtexSite& s = *call.s.ptex;
+static void answerPtexture(Services& answers, const ServiceCall& call) {
+    const auto& s = static_cast<const PtexSite&>(*call.s.resolved);
     const auto number = [&](int row, int lane, float fallback) { return row < 0 ? fallback : call.at(row, lane); };
     call.each([&](int lane, const ShadePoint& p) {
         const ptex::Texture* t = answers.ptexOf(s.computed ? std::bit_cast<int32_t>(call.at(0, lane)) : call.s.nameId, call);
@@ -82,6 +135,10 @@ void answerPtexture(Services& answers, const ServiceCall& call) {
                                          {}});
         for (int k = 0; k < s.count; ++k) call.put(k, lane, out[k]);
     });
+}
+
+Service ptextureService() {
+    return {"ptexture", SiteKind::Service, kSendsNothing | kReadsFacePlaces, answerPtexture, bindPtexture};
 }
 
 } // namespace alpenglow::services

@@ -64,6 +64,15 @@ public:
     /// uniform in [0, 1); `values`: BoundLight::values at a point.
     static void chooseSent(const BoundLight&, float u, const float* values, LightValue&);
 
+    // Services that use the state of this class; table.cpp lists them.
+    void drawRandom(const ServiceCall&);       ///< random(); draws.cpp
+    void answerDepth(const ServiceCall&);      ///< depth(); dispatch.cpp
+    void transformBetween(const ServiceCall&); ///< transform() and its kin between spaces named at run time; dispatch.cpp
+    /// Reads arguments of a loop beyond the rows of lightBegin(): category, sent values, outputs of the surface. lightloop.cpp
+    void lightSetup(KernelRun&, int site, int first, int lanes, const float* in);
+    /// Shadeops for lights and handles: getlight, getlights, islightcategory, and calls through a handle. lighthandles.cpp
+    void lightHandles(const ServiceCall&);
+
     // Shared by services in other files.
     const WorldImpl& world() const { return *world_; }
     ServiceMemo& memo() { return memo_; }
@@ -137,20 +146,13 @@ public:
 private:
     using LightsAsked = std::map<int, uint64_t>; ///< by light: the lanes that query it
     Random random(const shading::PathRay& r) const { return Random(r.sample ? r.sample->numbers : noSample_); }
-    void drawRandom(const ServiceCall&); // draws.cpp
     // dispatch.cpp
     void sumAmbient(const ServiceCall&);
-    void answerDepth(const ServiceCall&);
-    void transformBetween(const ServiceCall&);
     void print(const ServiceCall&, int lane, const std::string& text);
     // lightloop.cpp
-    /// Reads arguments of a loop beyond the rows of lightBegin(): category, sent values, outputs of the surface.
-    void lightSetup(KernelRun&, int site, int first, int lanes, const float* in);
     /// lightFetch() from the strip's cache, which it fills.
     uint64_t fetchKept(KernelRun&, LightLoop&, int light, int turn, int first, uint64_t mask, int lanes, float* out);
     // lighthandles.cpp
-    /// Shadeops for lights and handles: getlight, getlights, islightcategory, and calls through a handle.
-    void lightHandles(const ServiceCall&);
     void getLights(const ServiceCall&);
     void lightParameters(const ServiceCall&, const LightsAsked&);
     /// handle->light(): a loop over the queried lights.
@@ -244,7 +246,6 @@ void answerTexture3d(Services&, const ServiceCall&);
 // pointbased.cpp: occlusion(), indirectdiffuse() and subsurface() of point clouds.
 void answerPointHemisphere(Services&, const ServiceCall&);
 void answerPointSubsurface(Services&, const ServiceCall&);
-void answerPtexture(Services&, const ServiceCall&); // ptexture.cpp
 // messages.cpp: surface() and similar, lightsource(), attribute(), shadername(), getvar() of the primitive.
 void answerMessage(Services&, const ServiceCall&);
 void answerLightSource(Services&, const ServiceCall&);

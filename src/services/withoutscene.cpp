@@ -1,12 +1,11 @@
 #include "services/withoutscene.h"
-#include "scene/scene.h"
 #include "services/services.h"
-#include "world/cloudstore.h"
+#include "services/table.h"
 
 namespace alpenglow::services {
 
 struct WithoutScene::State {
-    std::shared_ptr<WorldImpl> world;
+    std::shared_ptr<const WorldImpl> world;
     std::unique_ptr<Services> answers;
     const rsl::CompiledKernel* kernel = nullptr; ///< the kernel of `bound`
     BoundKernel bound;
@@ -14,15 +13,10 @@ struct WithoutScene::State {
 };
 
 WithoutScene::WithoutScene(std::vector<std::string> texturePaths, Diagnostics& d) : state_(std::make_unique<State>()) {
-    auto world = std::make_shared<WorldImpl>();
-    world->frame_ = std::make_shared<scene::Frame>();
-    world->settings_.texturePaths = std::move(texturePaths);
-    world->diagnostics_ = &d;
-    world->textures_ = std::make_unique<texture::TextureSystem>(d);
-    world->photons_ = std::make_shared<PhotonStore>(MapFiles{}, Matrix(), d);
-    world->clouds_ = std::make_shared<CloudStore>(MapFiles{world->settings_.texturePaths, {}}, d);
-    state_->world = world;
-    state_->answers = std::make_unique<Services>(*world, d, nullptr);
+    Settings settings;
+    settings.texturePaths = std::move(texturePaths);
+    state_->world = emptyWorld(settings, serviceTable(), d);
+    state_->answers = std::make_unique<Services>(*state_->world, d, nullptr);
 }
 
 WithoutScene::~WithoutScene() = default;
@@ -44,16 +38,12 @@ void WithoutScene::setPoints(const Vec3& eye, std::span<const Vec3> points) {
 bool WithoutScene::answer(const rsl::CompiledKernel& k, int32_t site, int32_t first, uint64_t mask, int32_t lanes,
                           const float* in, float* out) {
     if (site < 0) return false;
-    const std::string& op = k.sites()[size_t(site)].op;
-    bool asks = false;
-    for (const char* name : {"texture", "environment", "shadow", "texture3d", "textureinfo", "rayinfo", "rendererinfo",
-                             "raylevel", "isindirectray", "isshadowray", "__skysample", "__skydensity"})
-        asks |= op == name;
-    if (!asks) return false;
+    const Service* service = findService(serviceTable(), k.sites()[size_t(site)].op);
+    if (!service || !(service->traits & kWithoutScene)) return false;
     State& s = *state_;
     if (s.kernel != &k) {
         s.bound = bindKernel(std::shared_ptr<const rsl::CompiledKernel>(std::shared_ptr<const rsl::CompiledKernel>{}, &k), false,
-                             false, s.world.get());
+                             false, *s.world);
         s.kernel = &k;
         s.context.bound = &s.bound;
     }

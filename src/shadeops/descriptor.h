@@ -1,5 +1,5 @@
 // What a shadeop is: one object that the checker, the code generator, `alpenglow info --shadeops`, the manual and the tests read.
-// The code of a runtime shadeop stands beside its descriptor, in the file of its section of the 3Delight manual, 6.4.
+// The code of a runtime shadeop is in the file of its descriptor, that of its section of the 3Delight manual, 6.4.
 #pragma once
 #include "shadeops/types.h"
 #include <span>
@@ -68,6 +68,20 @@ struct Example {
     std::string expression, value, setup = {}, when = {};
 };
 
+/// What a shadeop filters over beyond its coordinates: where these go from sample to sample. The compiler adds the differences to
+/// the call.
+struct Footprint {
+    enum class Of : uint8_t {
+        Nothing,
+        Surface, ///< two floats, by default s and t; another form takes four corners of them
+        Space    ///< a point or direction
+    } of = Of::Nothing;
+    size_t first = 0;     ///< the argument where the coordinates begin
+    size_t count = 0;     ///< Space: arguments of the form that has a footprint
+    bool corners = false; ///< Space: another form takes four corners
+    bool marks = false;   ///< Surface: a call without coordinates gets a further argument, 1
+};
+
 struct Shadeop {
     std::string name;
     std::vector<Signature> signatures;
@@ -84,8 +98,10 @@ struct Shadeop {
     std::string source;  ///< what people can look up: a section, a paper; what is our own
     std::vector<Example> examples;
     std::vector<OptionalParameter> optional;
-    std::vector<Base> lastResort; ///< results that are meant only where no other becomes what is wanted: the distance of trace()
-    std::string rsl;              ///< Lowering::Rsl: the functions in RSL; names as in signatures
+    std::vector<Base>
+        lastResort;      ///< results that are chosen only if no other converts to the wanted type: the distance of trace()
+    Footprint footprint; ///< Lowering::Service
+    std::string rsl;     ///< Lowering::Rsl: the functions in RSL; names as in signatures
 };
 
 /// All shadeops, sorted by name. Built once, immutable.

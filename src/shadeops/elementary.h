@@ -6,7 +6,7 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
-inline constexpr float kMagic = 0x1.8p23f; ///< x + kMagic rounds x to an integer, which then stands in the low bits
+inline constexpr float kMagic = 0x1.8p23f; ///< x + kMagic rounds x to an integer, which is then in the low bits
 inline constexpr float kInfinity = __builtin_inff();
 inline constexpr float kPi = 0x1.921fb6p+1f, kPiLo = -0x1.777a5cp-24f, kPiLoLo = -0x1.ee59dap-49f; ///< sum: PI to 70 bits
 inline constexpr float kLn2 = 0x1.62e430p-1f, kLn2Lo = -0x1.05c610p-29f;

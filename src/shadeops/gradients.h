@@ -1,4 +1,4 @@
-// A value that was looked up with its slopes, and the coordinates it was looked up at: made one value with derivatives by the
+// Joins a value that was looked up with its slopes, and the coordinates of the lookup, to one value with derivatives by the
 // chain rule (rsl/passes/gradients.h). What is looked up counts as constant; al_chain*: as if the slopes were the same
 // everywhere; al_chain*c: with the second derivatives of the map, too.
 #pragma once

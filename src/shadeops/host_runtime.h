@@ -1,4 +1,4 @@
-// What the program knows of its own copy of the runtime (4 lanes), beyond evaluateRuntime.
+// Facts about the program's own copy of the runtime (4 lanes), beyond evaluateRuntime.
 #pragma once
 #include <string_view>
 #include <vector>

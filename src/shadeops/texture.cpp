@@ -1,6 +1,7 @@
 // Texture mapping: 3Delight manual, 6.4.6. The renderer answers; `name` may carry a channel, name[channel].
 #include "shadeops/describe.h"
 #include <algorithm>
+#include <utility>
 
 namespace alpenglow::rsl {
 namespace {
@@ -66,6 +67,20 @@ std::vector<OptionalParameter> environmentParameters() {
             list.push_back(std::move(o));
         }
     }
+    return list;
+}
+
+/// Sets the footprints of lookups.
+std::vector<Shadeop> withFootprints(std::vector<Shadeop> list) {
+    const std::pair<std::string_view, Footprint> kOf[] = {
+        {"texture", {Footprint::Of::Surface, 1}},
+        {"environment", {Footprint::Of::Space, 1, 2, true}},
+        {"shadow", {Footprint::Of::Space, 1, 2, true}},
+        {"texture3d", {Footprint::Of::Space, 1, 3}},
+        {"ptexture", {.of = Footprint::Of::Surface, .first = 3, .marks = true}}};
+    for (Shadeop& op : list)
+        for (const auto& [name, footprint] : kOf)
+            if (op.name == name) op.footprint = footprint;
     return list;
 }
 
@@ -189,7 +204,7 @@ std::vector<Shadeop> textureShadeops() {
         {kF, "maxdepth", false, "deepest",
          "the finest level that is read, 0 the coarsest: each halves the cells of the cube about the points"}};
     list.back().examples = {{"texture3d(\"none.ptc\", P, N, \"light\", x)", "0", "float x = 3;"}};
-    return list;
+    return withFootprints(std::move(list));
 }
 
 } // namespace alpenglow::rsl

@@ -1,6 +1,7 @@
 #include "shading/grids.h"
 #include "base/limits.h"
 #include "geometry/placed.h"
+#include "scene/primitivekinds.h"
 #include <algorithm>
 #include <map>
 
@@ -19,10 +20,7 @@ const Shape* baseOf(const Shape& s) {
     return placed->deforming() ? placed->deforming()->keys()[0].get() : placed->geometry().get();
 }
 
-bool isQuadric(const Shape& s) {
-    constexpr const char* kinds[] = {"Sphere", "Cone", "Cylinder", "Paraboloid", "Hyperboloid", "Torus", "Disk"};
-    return s.exactPrims() == 1 && std::any_of(std::begin(kinds), std::end(kinds), [&](const char* k) { return s.kind() == k; });
-}
+bool isQuadric(const Shape& s) { return s.exactPrims() == 1 && scene::has(s.kind(), scene::kQuadric); }
 
 class Grid {
 public:

@@ -1,6 +1,7 @@
 // The thread of a view, and requests of viewers.
 #include "view/session.h"
 #include "render/outputnames.h"
+#include "render/outputs.h"
 #include "scene/scene.h"
 #include "view/ribcopy.h"
 #include <algorithm>
@@ -409,6 +410,7 @@ Json Session::scene() {
         j["outputs"] = outputs_;
         j["scene"] = sceneSerial_;
     }
+    j["computed"] = render::computedOutputs();
     if (s) // declared by the scene
         for (const auto& [name, declaration] : s->frame->options.displayChannels) j["outputs"].push_back(name);
     j["lights"] = s ? Json(s->lights) : Json::array();

@@ -7,8 +7,8 @@
 #include "world/gathersite.h"
 #include "world/photonattributes.h"
 #include "world/pointsite.h"
-#include "world/ptexsite.h"
 #include "world/raysets.h"
+#include "world/service.h"
 #include "world/unknownfilter.h"
 
 namespace alpenglow::world {
@@ -20,6 +20,7 @@ SourcePlace placeOf(const rsl::ir::Site& s, const rsl::CompiledKernel& k) {
 
 namespace {
 
+/// Calls that no service answers: requests, and loops.
 SiteKind kindOf(const std::string& op) {
     static const std::map<std::string, SiteKind> kinds = {{"ambient", SiteKind::Ambient},
                                                           {"diffuse", SiteKind::Diffuse},
@@ -34,60 +35,19 @@ SiteKind kindOf(const std::string& op) {
                                                           {"gather", SiteKind::Gather},
                                                           {"gatherturn", SiteKind::GatherIteration},
                                                           {"lightvisibility", SiteKind::LightVisibility},
-                                                          {"illuminance", SiteKind::Illuminance},
-                                                          {"texture", SiteKind::Texture},
-                                                          {"environment", SiteKind::Environment},
-                                                          {"shadow", SiteKind::Shadow},
-                                                          {"surface", SiteKind::Message},
-                                                          {"displacement", SiteKind::Message},
-                                                          {"atmosphere", SiteKind::Message},
-                                                          {"incident", SiteKind::Message},
-                                                          {"opposite", SiteKind::Message},
-                                                          {"lightsource", SiteKind::LightSource},
-                                                          {"attribute", SiteKind::Attribute},
-                                                          {"option", SiteKind::Option},
-                                                          {"rendererinfo", SiteKind::RendererInfo},
-                                                          {"rayinfo", SiteKind::RayInfo},
-                                                          {"raylevel", SiteKind::RayLevel},
-                                                          {"isindirectray", SiteKind::RayLevel},
-                                                          {"isshadowray", SiteKind::RayLevel},
-                                                          {"textureinfo", SiteKind::TextureInfo},
-                                                          {"__skysample", SiteKind::SkySamples},
-                                                          {"__skydensity", SiteKind::SkySamples},
-                                                          {"photonmap", SiteKind::Photons},
-                                                          {"caustic", SiteKind::Photons},
-                                                          {"lightsetup", SiteKind::LightSetup},
-                                                          {"getlight", SiteKind::LightHandles},
-                                                          {"getvar", SiteKind::PrimitiveVariable},
-                                                          {"shadername", SiteKind::ShaderName},
-                                                          {"getlights", SiteKind::LightHandles},
-                                                          {"islightcategory", SiteKind::LightHandles},
-                                                          {"currentlight", SiteKind::LightHandles},
-                                                          {"lightcall", SiteKind::LightHandles},
-                                                          {"lightparameter", SiteKind::LightHandles},
-                                                          {"bake", SiteKind::Bake},
-                                                          {"bake3d", SiteKind::Bake3d},
-                                                          {"texture3d", SiteKind::Texture3d},
-                                                          {"ptexture", SiteKind::Ptexture},
-                                                          {"depth", SiteKind::Depth},
-                                                          {"random", SiteKind::Random},
-                                                          {"transform", SiteKind::Transform},
-                                                          {"vtransform", SiteKind::Transform},
-                                                          {"ntransform", SiteKind::Transform},
-                                                          {"mtransform", SiteKind::Transform}};
+                                                          {"illuminance", SiteKind::Illuminance}};
     auto i = kinds.find(op);
     return i == kinds.end() ? SiteKind::Other : i->second;
 }
 
 /// Records hold irradiance of whole hemispheres around a normal: calls with other outputs or directions cannot use them.
-RecordSite recordSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& world) {
+RecordSite recordSite(const SiteInfo& i, const rsl::ir::Site& s) {
     const auto row = [&](const char* name) {
         auto f = i.named.find(name);
         return f == i.named.end() ? -1 : f->second;
     };
     RecordSite r{row("maxvariation"), row("maxpixeldist")};
     if (r.variation < 0 || i.resultRows.size() > 1 || row("horizon") >= 0 || row("axis") >= 0) return r;
-    world.interpolates_ = true;
     r.call = std::max<uint64_t>(1, std::hash<std::string>{}(s.op + ":" + std::to_string(s.place.file) + ":" +
                                                             std::to_string(s.place.line) + ":" + std::to_string(s.place.column)));
     return r;
@@ -95,7 +55,7 @@ RecordSite recordSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& worl
 
 /// Reads the parameters of a trace() beyond the common ones. Reports each ignored parameter once.
 std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
-                                           WorldImpl& world) {
+                                           const WorldImpl& world) {
     auto t = std::make_shared<TraceSite>();
     const SourcePlace place = placeOf(s, k);
     auto row = [&](const char* name) {
@@ -147,12 +107,12 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         t->apart = i.text.count(rsl::kPairApart) > 0;
         t->axis = i.rowHorizon >= 0;
         t->fade = {row("falloff"), row("falloffmode")};
-        t->records = recordSite(i, s, world);
+        t->records = recordSite(i, s);
     }
     return t;
 }
 
-std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl::ir::Site& s, WorldImpl& world) {
+std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl::ir::Site& s) {
     auto o = std::make_shared<OcclusionSite>();
     auto row = [&](const char* name) {
         auto f = i.named.find(name);
@@ -165,7 +125,7 @@ std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl:
     o->least = row("minsamples");
     const auto word = i.text.find("distribution");
     o->uniform = word != i.text.end() && word->second == "uniform";
-    if (!o->uniform) o->records = recordSite(i, s, world);
+    if (!o->uniform) o->records = recordSite(i, s);
     return o;
 }
 
@@ -193,7 +153,7 @@ void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options
 }
 
 std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
-                                                     WorldImpl& world) {
+                                                     const WorldImpl& world) {
     auto b = std::make_shared<SubsurfaceSite>();
     const SourcePlace place = placeOf(s, k);
     const auto row = [&](std::initializer_list<const char*> names) {
@@ -238,7 +198,7 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
 }
 
 std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
-                                               WorldImpl& world) {
+                                               const WorldImpl& world) {
     const scene::Options& options = world.frame_->options;
     auto t = std::make_shared<TextureSite>();
     const auto row = [&](const char* name) {
@@ -288,6 +248,10 @@ Diagnostic unknownFilter(const std::string& name, const std::string& op, const S
             {}};
 }
 
+void bindMap(SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& world) { i.map = textureSite(i, *i.site, k, world); }
+void bindPhotonMap(SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& world) { i.photons = photonSite(i, k, world); }
+void bindCloud(SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& world) { i.cloud = cloudSite(i, k, world); }
+
 size_t rowsOf(const SiteInfo& i, int row) {
     int at = 0;
     for (auto kind : i.site->argKinds) {
@@ -331,7 +295,7 @@ static void bindSent(SiteInfo& i) {
 }
 
 /// Reads the distribution of a trace(), and rare parameters.
-static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k, WorldImpl& world) {
+static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k, const WorldImpl& world) {
     auto text = [&](const char* name, const char* fallback) {
         auto f = i.text.find(name);
         return f == i.text.end() ? std::string(fallback) : f->second;
@@ -401,20 +365,21 @@ static void bindRows(SiteInfo& i, const rsl::ir::Site& s) {
                  result("unshadowedarealight")};
 }
 
-BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, WorldImpl* world) {
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, const WorldImpl& world) {
     BoundKernel b;
     b.path = path;
     b.mixed = mixed;
     if (!k) return b;
     for (const auto& s : k->sites()) {
         SiteInfo i;
-        i.kind = kindOf(s.op);
+        i.service = findService(world.services_, s.op);
+        i.kind = i.service ? i.service->kind : kindOf(s.op);
         i.site = &s;
         bindRows(i, s);
         if (readsPoints(i)) {
             i.kind = s.op == "subsurface" ? SiteKind::PointSubsurface : SiteKind::PointHemisphere;
-            auto points = std::make_shared<PointSite>(*pointSite(i, *k, *world));
-            if (s.op == "subsurface") points->below = *subsurfaceSite(i, s, *k, *world);
+            auto points = std::make_shared<PointSite>(*pointSite(i, *k, world));
+            if (s.op == "subsurface") points->below = *subsurfaceSite(i, s, *k, world);
             i.points = std::move(points);
         }
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
@@ -429,15 +394,11 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (const auto cache = i.text.find("lightcache"); cache != i.text.end()) i.refresh = cache->second == "refresh";
         if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
         bindSent(i);
-        if (i.kind == SiteKind::Texture || i.kind == SiteKind::Environment || i.kind == SiteKind::Shadow)
-            i.map = textureSite(i, s, *k, *world);
-        if (i.kind == SiteKind::Ptexture) i.ptex = ptexSite(i, *k, *world);
-        if (i.kind == SiteKind::Photons) i.photons = photonSite(i, *k, *world);
-        if (i.kind == SiteKind::Bake || i.kind == SiteKind::Bake3d || i.kind == SiteKind::Texture3d)
-            i.cloud = cloudSite(i, *k, *world);
-        if (i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere)) world->photons_->asksGlobal = true;
+        if (i.service && i.service->bind) i.service->bind(i, *k, world);
+        b.needs.globalPhotons |= i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere);
+        b.needs.facePlaces |= i.service && (i.service->traits & kReadsFacePlaces);
         bindLobe(i);
-        i.exponent = s.op == "specularstd" || world->rispecSpecular_ ? kRispecExponent : kSpecularExponent;
+        i.exponent = s.op == "specularstd" || world.rispecSpecular_ ? kRispecExponent : kSpecularExponent;
         auto rowOf = [&](const char* name) {
             auto f = i.named.find(name);
             return f == i.named.end() ? -1 : f->second;
@@ -457,26 +418,29 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
             };
             i.label = rsl::internString(!text("label").empty() ? text("label") : text("raylabel"));
             i.rays = raySite(
-                i, *world,
+                i, world,
                 {s.place.file < int(k->files().size()) ? k->files()[size_t(s.place.file)] : "", s.place.line, s.place.column});
         }
-        if (i.kind == SiteKind::Trace) bindTrace(i, s, *k, *world);
+        if (i.kind == SiteKind::Trace) bindTrace(i, s, *k, world);
         if (i.kind == SiteKind::Subsurface) {
             i.lobe = findLobe("uniform"); // its rays walk; it has no width
-            i.subsurface = subsurfaceSite(i, s, *k, *world);
+            i.subsurface = subsurfaceSite(i, s, *k, world);
         }
         if (i.kind == SiteKind::Occlusion) {
-            i.occlusion = occlusionSite(i, s, *world);
-            i.trace = traceSite(i, s, *k, *world);
+            i.occlusion = occlusionSite(i, s);
+            i.trace = traceSite(i, s, *k, world);
         }
         if (path) i.block = blockSite(i);
         b.sites.push_back(std::move(i));
     }
-    linkGathers(b, *k, *world);
+    linkGathers(b, *k, world);
     b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
-    world->footprints_ |= b.plan->usesFootprint();
-    // "samplebase" is a fraction of the footprint
-    for (const SiteInfo& i : b.sites) world->footprints_ |= i.rays && i.rays->base >= 0;
+    b.needs.footprints = b.plan->usesFootprint();
+    for (const SiteInfo& i : b.sites) {
+        b.needs.footprints |= i.rays && i.rays->base >= 0; // "samplebase" is a fraction of the footprint
+        b.needs.hitModes |= i.rays && (i.rays->set.mode != shading::HitMode::Default || i.rays->mode >= 0);
+        b.needs.records |= (i.trace && i.trace->records.call) || (i.occlusion && i.occlusion->records.call);
+    }
     b.kernel = std::move(k);
     b.blocks = asksBlocks(b);
     return b;

@@ -33,7 +33,7 @@ void bindDistribution(const SiteInfo& s, LobeArguments& a) {
     row(kRowRoughnessV, t.roughnessv >= 0 ? t.roughnessv : t.roughness, 1);
     row(kRowUdir, t.udir, 3);
     row(kRowAbsorption, t.absorption, 3);
-    for (int k = 0; k < 3; ++k) a.numbers[kRowEta - kRowRoughness + k] = defaultEta(*s.lobe);
+    for (int k = 0; k < 3; ++k) a.numbers[kRowEta - kRowRoughness + k] = s.lobe->eta;
     for (size_t k = 0; k < t.eta.size() && k < 2; ++k)
         for (int q = 0; q < 3; ++q) row((k ? kRowK : kRowEta) + q, t.eta[k].first + (t.eta[k].second == 1 ? 0 : q), 1);
     a.numbers[kRowPart - kRowRoughness] = float(t.part);
@@ -42,8 +42,6 @@ void bindDistribution(const SiteInfo& s, LobeArguments& a) {
     for (int k = 0; k < count; ++k) row(kRowLobes + k, t.lobes[size_t(k)], 1);
 }
 } // namespace
-
-float defaultEta(const LobeKind& k) { return k.name == "glass-ggx" ? 1.5f : k.name == "hair" ? 1.55f : 0.f; }
 
 std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
     if (!s.lobe || (s.lobe->distribution && s.kind != SiteKind::Trace)) return nullptr;
@@ -71,8 +69,8 @@ std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
         a.samples = s.rays->samples;
         a.lights = s.rowLights;
         if (s.lobe->distribution) bindDistribution(s, a);
-        a.a = s.lobe->name == "slphong" ? s.rowExponent : s.rowCone;
-        a.otherwise = s.lobe->name == "slphong" ? 1000 : 0;
+        a.a = s.lobe->has(kTakesExponent) ? s.rowExponent : s.rowCone;
+        a.otherwise = s.lobe->has(kTakesExponent) ? 1000 : 0;
         break;
     default:
         return nullptr;

@@ -6,8 +6,6 @@ namespace alpenglow::world {
 
 /// Argument rows of a call that requests a lobe without any work for each point; null: another kind of call.
 std::shared_ptr<const LobeArguments> blockSite(const SiteInfo&);
-/// Index of refraction of a distribution whose call gives none.
-float defaultEta(const LobeKind&);
 /// Whether all lobe requests of the kernel are such calls.
 bool asksBlocks(const BoundKernel&);
 

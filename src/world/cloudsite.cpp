@@ -48,7 +48,7 @@ void noteString(const std::string& name, const SourcePlace& at, const WorldImpl&
 
 } // namespace
 
-std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
+std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& world) {
     auto c = std::make_shared<CloudSite>();
     const rsl::ir::Site& s = *i.site;
     pointcloud::BakeLayout& l = c->layout;

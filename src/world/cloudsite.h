@@ -28,6 +28,6 @@ struct CloudSite {
     bool addsArea = false;         ///< bake3d() without "_area": appends that channel
 };
 
-std::shared_ptr<const CloudSite> cloudSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
+std::shared_ptr<const CloudSite> cloudSite(const SiteInfo&, const rsl::CompiledKernel&, const WorldImpl&);
 
 } // namespace alpenglow::world

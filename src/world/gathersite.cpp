@@ -104,7 +104,7 @@ void readSent(const SiteInfo& i, GatherSite& g) {
 
 } // namespace
 
-void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, WorldImpl& world) {
+void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, const WorldImpl& world) {
     std::map<std::string, std::shared_ptr<GatherSite>> known;
     const auto numberOf = [](const SiteInfo& i) {
         const auto n = i.text.find(rsl::kPairGather);

@@ -59,7 +59,7 @@ struct GatherSite {
 };
 
 /// Sets SiteInfo::gather for the call sites of a kernel.
-void linkGathers(BoundKernel&, const rsl::CompiledKernel&, WorldImpl&);
+void linkGathers(BoundKernel&, const rsl::CompiledKernel&, const WorldImpl&);
 
 /// Names that gather() statements of shaders use.
 struct GatheredNames {

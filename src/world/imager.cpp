@@ -5,19 +5,19 @@
 
 namespace alpenglow::world {
 
+void WorldImpl::bindImager(Diagnostics& d) {
+    const scene::ShaderRef& imager = frame_->options.imager;
+    if (!imager) return;
+    InstanceRef shader = instance(*imager, rsl::ShaderKind::Imager, d);
+    if (const scene::AttributesRef& a = frame_->options.attributes) shader = withCoShaders(shader, a->coshaders, d);
+    const KernelNeeds ofRays = needs_;
+    if (shader) imager_.kernel = kernel(*shader, {}, {}, false, false, d);
+    needs_ = ofRays;
+    imager_.shader = std::move(shader);
+}
+
 bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, float* g, float* b, float* alpha, Diagnostics& d,
                           const StopFlag* stop) const {
-    const scene::ShaderRef& imager = frame_->options.imager;
-    if (!imager) return false;
-    std::lock_guard lock(imagerMutex_);
-    if (!imager_.bound) { // compiled on first use, under the lock
-        auto* self = const_cast<WorldImpl*>(this);
-        self->imager_.bound = true;
-        InstanceRef shader = self->instance(*imager, rsl::ShaderKind::Imager, d);
-        if (const scene::AttributesRef& a = frame_->options.attributes) shader = self->withCoShaders(shader, a->coshaders, d);
-        if (shader) self->imager_.kernel = self->kernel(*shader, {}, {}, false, false, d);
-        self->imager_.shader = std::move(shader);
-    }
     const InstanceRef& i = imager_.shader;
     const BoundKernel& k = imager_.kernel;
     if (!i || !k || k.kernel->facts().suspends) return false;

@@ -13,6 +13,7 @@
 #include "world/lightchooser.h"
 #include "world/photonstore.h"
 #include "world/records.h"
+#include "world/service.h"
 #include "world/world.h"
 #include <functional>
 #include <unordered_map>
@@ -47,7 +48,7 @@ public:
     std::vector<FlippedNormalsCall> callsTurnedAway() const override { return turnedAway_.blocked(); }
     std::vector<std::string> knownOutputs() const override;
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
-    bool interpolates() const override { return interpolates_; }
+    bool interpolates() const override { return needs_.records; }
     size_t keepRecords() const override { return records_.keep(); }
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
                    const StopFlag* stop) const override;
@@ -83,6 +84,8 @@ public:
     std::vector<rsl::ir::OutputLight> lightOfOutputs(const ShaderInstance&, const std::vector<std::string>& outputs,
                                                      const std::vector<std::string>& varying, bool path) const;
 
+    /// Sets what every world has: the frame, settings, services, camera, and the stores of maps, which are opened at first use.
+    void begin(std::shared_ptr<const scene::Frame>, const Settings&, ServiceTable, Diagnostics&);
     /// Computes camera matrices from the frame's options.
     void setCamera(const scene::Options&);
     /// For a bound surface shader that assigns P: the kernel that computes P alone, run at dicing. None if the shader leaves P
@@ -132,6 +135,7 @@ public:
     size_t sceneLights_ = 0;   ///< lights of frame_; later entries of lights_ are further blocks of their shaders
     MakeEvaluator evaluators_; ///< also used by the imager
     Settings settings_;
+    ServiceTable services_;                                         ///< of services/, above this folder
     bool rispecSpecular_ = false;                                   ///< specular() uses RISpec's exponent (shadeops/specular.h)
     std::map<const scene::ShaderCall*, InstanceRef> coShaders_;     ///< one instance for each request
     std::map<std::vector<const void*>, InstanceRef> withCoShaders_; ///< by shader, then the requests of its co-shaders
@@ -204,14 +208,14 @@ public:
     mutable FlippedNormals turnedAway_;
     bool globalMaps_ = false; ///< some surface has a global photon map that an indirectdiffuse() may use
     mutable LightRecords records_;
-    bool interpolates_ = false; ///< some call may use irradiance caching
-    mutable std::mutex imagerMutex_;
+    KernelNeeds needs_; ///< of all kernels, joined by kernel()
     struct BoundImager {
-        bool bound = false;
         InstanceRef shader;
         BoundKernel kernel;
     };
-    BoundImager imager_;                     ///< set by runImager(), under the lock
+    BoundImager imager_; ///< null if the frame has none
+    /// Compiles it and sets imager_. Its points are pixels, so its needs are not added to needs_.
+    void bindImager(Diagnostics&);
     bool built_ = false;                     ///< threads may read the world
     std::vector<std::string> lightMessages_; ///< parameters of surfaces that lights and atmospheres query, sorted
     std::set<std::string>
@@ -224,7 +228,6 @@ public:
     int lightTraces_ = 0;
     void countLightTraces();
     bool lightChannels_ = false; ///< lights write AOVs by outputchannel()
-    bool footprints_ = false;    ///< some kernel reads du or dv
     bool allOpaque_ = true;      ///< no opacity below 1: shadow rays run no shaders
     /// Otherwise, by shape, subsets for rays without a "hitmode": shapes that block all light, and the others with their bounding
     /// box.
@@ -240,7 +243,6 @@ public:
     /// Sets the photon visibility of surfaces; `visibility`: ray visibility, by shape. Defined in photonattributes.cpp.
     void bindPhotons(std::span<const uint32_t> visibility);
     bool fades_ = false;       ///< some shape fades between levels of detail
-    bool hitModes_ = false;    ///< some call has a "hitmode"
     BoundKernel primitiveHit_; ///< shows primitives by Color and Opacity; set only if rays can request it
     ShapeSubsets subsets_;
     /// A list of lights that surfaces share.
@@ -277,6 +279,10 @@ public:
     std::vector<std::pair<Vec3d, Vec3d>>
         clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the side of the normal
 };
+
+/// The world of no scene: an empty frame with the default camera and no shapes, lights or shaders. For services of shaders that
+/// run without a scene (alpenglow eval and shade). `settings`: where maps are looked up.
+std::shared_ptr<const WorldImpl> emptyWorld(const Settings&, ServiceTable, Diagnostics&);
 
 // If two threads open the map at once, both get the same one.
 template <class Place> texture::Handle TextureSite::map(const WorldImpl& world, Place&& place) const {

@@ -2,6 +2,7 @@
 #include "scene/scene.h"
 #include "world/cloudstore.h"
 #include "world/impl.h"
+#include "world/service.h"
 
 namespace alpenglow::world {
 
@@ -9,35 +10,16 @@ namespace {
 
 /// Whether a call needs neither rays nor points of complete surfaces. Unlisted calls may need them.
 bool sendsNothing(const SiteInfo& s) {
+    if (s.service) return (s.service->traits & kSendsNothing) && s.sentStrings.empty(); // sent strings make kernels later
     switch (s.kind) {
     case SiteKind::Ambient:
     case SiteKind::Diffuse:
     case SiteKind::Specular:
     case SiteKind::Phong:
     case SiteKind::Illuminance:
-    case SiteKind::Texture:
-    case SiteKind::Environment: // of maps; with rays it is a trace()
-    case SiteKind::Shadow:
     case SiteKind::Printf:
-    case SiteKind::Message:
-    case SiteKind::LightSource:
-    case SiteKind::Attribute:
-    case SiteKind::Option:
-    case SiteKind::RendererInfo:
-    case SiteKind::RayInfo:
-    case SiteKind::RayLevel:
-    case SiteKind::TextureInfo:
-    case SiteKind::LightSetup:
-    case SiteKind::LightHandles:
-    case SiteKind::PrimitiveVariable:
-    case SiteKind::ShaderName:
-    case SiteKind::Depth:
-    case SiteKind::Transform:
-    case SiteKind::Random:
     case SiteKind::Text:
-    case SiteKind::Texture3d:
-    case SiteKind::Ptexture:
-        return s.sentStrings.empty(); // sent strings make kernels that do not exist yet
+        return s.sentStrings.empty();
     default:
         return false;
     }
@@ -53,7 +35,7 @@ bool sendsNothing(const Opacity& o) { return sendsNothing(o.kernel); }
 
 bool WorldImpl::onlyCameraRays() const {
     if (settings_.hider == Hider::Path || !media_.empty() || deferred_ || globalMaps_ || (clouds_ && clouds_->bakes) ||
-        interpolates_ || settings_.bsdfOnly || settings_.lightOnly)
+        needs_.records || settings_.bsdfOnly || settings_.lightOnly)
         return false;
     for (const BoundLight& l : lights_) {
         // An area light with a mean needs no rays; any other with an extent does.

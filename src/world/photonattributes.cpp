@@ -70,11 +70,11 @@ void WorldImpl::bindPhotons(std::span<const uint32_t> visibility) {
         const uint32_t traced = visibility[i] & (accel::kDiffuse | accel::kSpecular);
         b.meets = seenByPhotons(shapes_[i]->attributes()).value_or(traced != 0);
         b.intersectsBoth = traced == (accel::kDiffuse | accel::kSpecular);
-        globalMaps_ |= photons_->asksGlobal && !b.globalMap.empty();
+        globalMaps_ |= needs_.globalPhotons && !b.globalMap.empty();
     }
 }
 
-std::shared_ptr<const PhotonSite> photonSite(const SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
+std::shared_ptr<const PhotonSite> photonSite(const SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& world) {
     auto p = std::make_shared<PhotonSite>();
     const rsl::ir::Site& s = *i.site;
     const auto row = [&](const char* name) {

@@ -11,7 +11,7 @@ PhotonBinding photonsOf(const scene::Attributes&, Diagnostics&);
 std::string photonKey(const scene::Attributes&);
 
 /// Arguments of a photonmap() or caustic() call. Registers the maps that it needs with the world.
-std::shared_ptr<const PhotonSite> photonSite(const SiteInfo&, const rsl::CompiledKernel&, WorldImpl&);
+std::shared_ptr<const PhotonSite> photonSite(const SiteInfo&, const rsl::CompiledKernel&, const WorldImpl&);
 
 /// Attribute "light" "emitphotons": whether a light emits photons; nothing: not set.
 std::optional<bool> emitsPhotons(const BoundLight&);

@@ -24,7 +24,7 @@ public:
     /// Registers a photonmap() of this name, with the place of the call.
     void asks(const std::string& name, const SourcePlace&);
     /// A caustic() or indirectdiffuse() call needs the maps named by surface attributes.
-    bool asksCaustics = false, asksGlobal = false;
+    bool asksCaustics = false;
     /// Names that shaders give themselves.
     const std::map<std::string, SourcePlace>& asked() const { return asked_; }
 

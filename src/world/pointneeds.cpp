@@ -16,8 +16,8 @@ uint32_t needsOf(const BoundLight& l) {
 
 void WorldImpl::setPointNeeds() {
     // Lights may query the lit surface, and footprints use partial derivatives.
-    uint32_t always = footprints_ ? geometry::kNeedPartials : 0;
-    if (ptex_) always |= geometry::kNeedUV | geometry::kNeedPartials; // positions on faces
+    uint32_t always = needs_.footprints ? geometry::kNeedPartials : 0;
+    if (needs_.facePlaces) always |= geometry::kNeedUV | geometry::kNeedPartials;
     for (const BoundLight& l : lights_) {
         if (!l.kernel) continue;
         always |= l.kernel.plan->litNeeds();

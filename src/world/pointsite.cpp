@@ -13,7 +13,7 @@ bool readsPoints(const SiteInfo& i) {
     return (i.site->op == "occlusion" || i.site->op == "indirectdiffuse") && i.text.count(rsl::kPairPoints) > 0;
 }
 
-std::shared_ptr<const PointSite> pointSite(const SiteInfo& i, const rsl::CompiledKernel& k, WorldImpl& world) {
+std::shared_ptr<const PointSite> pointSite(const SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& world) {
     auto p = std::make_shared<PointSite>();
     const rsl::ir::Site& s = *i.site;
     const auto row = [&](const char* name) {

@@ -84,7 +84,7 @@ const uint8_t* ShapeSubsets::find(const WorldImpl& world, const std::string& wan
     return take.data();
 }
 
-std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, const SourcePlace& place) {
+std::shared_ptr<const RaySite> raySite(const SiteInfo& i, const WorldImpl& world, const SourcePlace& place) {
     auto r = std::make_shared<RaySite>();
     const std::string op = i.site->op;
     auto row = [&](const char* name) {
@@ -135,7 +135,6 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, WorldImpl& world, cons
         if (const auto m = modeOf(word)) r->set.mode = *m;
         else unknown("hitmode", word, "primitive, shader, default");
     }
-    world.hitModes_ |= r->set.mode != HitMode::Default || r->mode >= 0;
     r->set.only = world.subsets_.find(world, r->subsetText, r->excludeText);
     r->saysSides = r->sides >= 0 || !text("hitsides").empty();
     r->fixed = r->subset < 0 && r->exclude < 0 && r->sides < 0 && r->mode < 0 && r->label < 0 && r->type < 0;

@@ -14,6 +14,6 @@ std::optional<shading::HitMode> modeOf(const std::string& word);
 RayType rayTypeOf(const std::string& word);
 
 /// Reads the optional parameters of a call; reports unknown words.
-std::shared_ptr<const RaySite> raySite(const SiteInfo&, WorldImpl&, const SourcePlace&);
+std::shared_ptr<const RaySite> raySite(const SiteInfo&, const WorldImpl&, const SourcePlace&);
 
 } // namespace alpenglow::world

@@ -360,7 +360,9 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
     ++facts_.kernels;
     facts_.cacheHits += k->fromCache();
     (k->facts().suspends ? facts_.suspending : facts_.affine)++;
-    return bindKernel(std::move(k), mixed, path, this);
+    BoundKernel bound = bindKernel(std::move(k), mixed, path, *this);
+    needs_ |= bound.needs;
+    return bound;
 }
 
 } // namespace alpenglow::world

@@ -88,10 +88,11 @@ struct SubsurfaceSite {
     enum class Model : uint8_t { Walk, Dipole, BetterDipole } model = Model::Walk;
     std::string group; ///< "": from the attribute
 };
-struct GatherSite; // world/gathersite.h
-struct CloudSite;  // world/cloudsite.h
-struct PointSite;  // world/pointsite.h
-struct PtexSite;   // world/ptexsite.h
+struct GatherSite;  // world/gathersite.h
+struct CloudSite;   // world/cloudsite.h
+struct PointSite;   // world/pointsite.h
+struct Service;     // world/service.h
+struct ServiceSite; // world/service.h
 
 /// Parameters of a photonmap() or caustic(). Rows, or -1.
 struct PhotonSite {
@@ -165,7 +166,7 @@ enum class SiteKind : uint8_t {
     Texture3d,
     PointHemisphere,
     PointSubsurface,
-    Ptexture,
+    Service, ///< answered by SiteInfo::service, and of no interest elsewhere
     Other
 };
 struct SiteInfo {
@@ -196,7 +197,8 @@ struct SiteInfo {
     std::shared_ptr<const PhotonSite> photons;        ///< Photons
     std::shared_ptr<const CloudSite> cloud;           ///< Bake, Bake3d, Texture3d
     std::shared_ptr<const PointSite> points;          ///< PointHemisphere, PointSubsurface
-    std::shared_ptr<const PtexSite> ptex;             ///< Ptexture
+    const Service* service = nullptr;                 ///< answers the call; null: a request, or a call of another kind
+    std::shared_ptr<const ServiceSite> resolved;      ///< what `service` has resolved
     bool setUp = false, refresh = false;              ///< loops: with a setup; "lightcache" "refresh"
     bool outside = false;                             ///< queries: outside of light loops
     bool once = false;                                ///< printf: in construct()
@@ -235,11 +237,26 @@ struct SiteInfo {
 /// Number of rows of the argument that begins at `row`.
 size_t rowsOf(const SiteInfo&, int row);
 
+/// What the calls of a kernel need of the whole world. A world joins those of all its kernels.
+struct KernelNeeds {
+    bool records = false;       ///< some call may use irradiance caching
+    bool footprints = false;    ///< du or dv is read
+    bool hitModes = false;      ///< some call has a "hitmode"
+    bool globalPhotons = false; ///< an indirectdiffuse() may use a global photon map
+    bool facePlaces = false;    ///< positions on faces are read
+    KernelNeeds& operator|=(const KernelNeeds& o) {
+        records |= o.records, footprints |= o.footprints, hitModes |= o.hitModes;
+        globalPhotons |= o.globalPhotons, facePlaces |= o.facePlaces;
+        return *this;
+    }
+};
+
 /// A kernel with its resolved call sites.
 struct BoundKernel {
     std::shared_ptr<const rsl::CompiledKernel> kernel;
     std::shared_ptr<const shading::BatchPlan> plan;
     std::vector<SiteInfo> sites;
+    KernelNeeds needs;
     bool mixed = false;
     bool path = false;   ///< lobe shadeops are requests; else they are evaluated at once
     bool blocks = false; ///< all its requests are lobes with SiteInfo::block
@@ -247,6 +264,7 @@ struct BoundKernel {
 };
 /// File position of a call.
 SourcePlace placeOf(const rsl::ir::Site&, const rsl::CompiledKernel&);
-BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, WorldImpl*);
+/// Resolves the call sites of a kernel for a world. Opens the maps that they name.
+BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel>, bool mixed, bool path, const WorldImpl&);
 
 } // namespace alpenglow::world

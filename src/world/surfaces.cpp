@@ -4,6 +4,7 @@
 #include "shading/faceindex.h"
 #include "world/gathersite.h"
 #include "world/photonattributes.h"
+#include "world/service.h"
 #include "world/shadervalue.h"
 #include <set>
 
@@ -124,7 +125,7 @@ bool SurfaceBinder::bindAll() {
 }
 
 bool SurfaceBinder::bindHitModes() {
-    if (!world_.hitModes_) return true;
+    if (!world_.needs_.hitModes) return true;
     const InstanceRef plain = world_.builtin("constant", rsl::ShaderKind::Surface, diagnostics_);
     if (plain) world_.primitiveHit_ = world_.kernel(*plain, {"Ci", "Oi"}, {}, true, path_, diagnostics_);
     if (!world_.primitiveHit_) return false;
@@ -239,7 +240,7 @@ int SurfaceBinder::bindAnew(const geometry::ShapeRef& shape) {
          {std::pair{"shade:diffusehitmode", uint32_t(accel::kDiffuse)}, {"shade:specularhitmode", uint32_t(accel::kSpecular)}})
         if (const scene::Param* p = a.value(name); p && !p->strings.empty() && p->strings[0] == "primitive")
             b.primitiveFor |= bit;
-    world_.hitModes_ |= b.primitiveFor != 0;
+    world_.needs_.hitModes |= b.primitiveFor != 0;
     b.attributes = shape->attributesRef();
     b.photons = photonsOf(a, diagnostics_);
     // Displaced shapes and different kernels never share a batch. Equal S builds imply equal V builds.
@@ -451,27 +452,8 @@ void SurfaceBinder::bindDisplacement(SurfaceBinding& b, const Names& varying, co
 /// Whether a kernel may request light, or query lights.
 static bool asksForLight(const BoundKernel& k) {
     return std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) {
-        switch (s.kind) {
-        case SiteKind::Texture:
-        case SiteKind::Environment:
-        case SiteKind::TextureInfo:
-        case SiteKind::Irradiance:
-        case SiteKind::Printf:
-        case SiteKind::Attribute:
-        case SiteKind::Option:
-        case SiteKind::RendererInfo:
-        case SiteKind::RayInfo:
-        case SiteKind::RayLevel:
-        case SiteKind::PrimitiveVariable:
-        case SiteKind::ShaderName:
-        case SiteKind::Depth:
-        case SiteKind::Transform:
-        case SiteKind::Random:
-        case SiteKind::Text:
-            return false;
-        default:
-            return true;
-        }
+        if (s.service) return !(s.service->traits & kAsksNoLight);
+        return s.kind != SiteKind::Irradiance && s.kind != SiteKind::Printf && s.kind != SiteKind::Text;
     });
 }
 

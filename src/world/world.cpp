@@ -9,6 +9,7 @@
 #include "scene/numbers.h"
 #include "scene/scene.h"
 #include "world/cloudstore.h"
+#include "world/ptexstore.h"
 #include "world/surfaces.h"
 #include <chrono>
 #include <cstdlib>
@@ -192,18 +193,37 @@ static void takeDiced(WorldImpl& w, const std::vector<uint32_t>& visibility) {
         if (l.emitter) l.emitter->takeDiced(seenThrough);
 }
 
+void WorldImpl::begin(std::shared_ptr<const scene::Frame> frame, const Settings& settings, ServiceTable services,
+                      Diagnostics& d) {
+    frame_ = std::move(frame);
+    sceneLights_ = frame_->lights.size();
+    settings_ = settings;
+    services_ = services;
+    diagnostics_ = &d;
+    setCamera(frame_->options);
+    const MapFiles files{settings.texturePaths, settings.read};
+    photons_ = std::make_shared<PhotonStore>(files, worldToCamera_, d);
+    clouds_ = std::make_shared<CloudStore>(files, d);
+    ptex_ = std::make_shared<PtexStore>(files, d);
+}
+
+std::shared_ptr<const WorldImpl> emptyWorld(const Settings& settings, ServiceTable services, Diagnostics& d) {
+    auto w = std::make_shared<WorldImpl>();
+    w->begin(std::make_shared<scene::Frame>(), settings, services, d);
+    w->textures_ = std::make_unique<texture::TextureSystem>(d);
+    w->accel_ = std::make_unique<accel::Accel>(w->shapes_, std::vector<uint32_t>(), d, true);
+    w->built_ = true;
+    return w;
+}
+
 std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Frame>& frame, const Settings& settings,
-                                          MakeEvaluator evaluators, Diagnostics& d) {
+                                          std::span<const Service> services, MakeEvaluator evaluators, Diagnostics& d) {
     double begin = buildClock();
     auto w = std::make_shared<WorldImpl>();
-    w->frame_ = frame;
-    w->sceneLights_ = frame->lights.size();
-    w->settings_ = settings;
+    w->begin(frame, settings, services, d);
     for (const std::string& name : settings.outputs) w->wanted_.push_back(rsl::OutputName::parse(name));
-    w->diagnostics_ = &d;
     const scene::Options& o = frame->options;
     bool path = settings.hider == Hider::Path;
-    w->setCamera(o);
     w->maxDepth_ = path ? 32 : 4;
     if (auto i = o.values.find("trace:maxdepth"); i != o.values.end() && !i->second.numbers.empty())
         w->maxDepth_ = int(std::clamp(double(i->second.numbers[0]), -1.0, double(limits::kPathDepth)));
@@ -224,8 +244,6 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
         w->settings_.shaderPaths.push_back(s);
         w->settings_.shaderPaths.push_back(s + "/ris"); // materials, patterns and lights of RIS
     }
-    w->photons_ = std::make_shared<PhotonStore>(MapFiles{settings.texturePaths, settings.read}, w->worldToCamera_, d);
-    w->clouds_ = std::make_shared<CloudStore>(MapFiles{settings.texturePaths, settings.read}, d);
     w->shapes_ = geometry::buildShapes(*frame, d);
     w->numberShapes();
     w->shadesAtOpen_ = shadesAtOpen(*frame, settings, w->shapes_);
@@ -268,6 +286,7 @@ std::shared_ptr<const World> World::build(const std::shared_ptr<const scene::Fra
     w->makeChoosers(d);
     w->facts_.shapes = w->shapes_.size();
     for (const auto& shape : w->shapes_) w->facts_.before += !(shape->bounds().hi.z <= 0);
+    w->bindImager(d);
     w->built_ = true;
     w->facts_.buildSec = buildClock() - begin - w->facts_.compileSec;
     return w;

@@ -11,6 +11,7 @@ namespace alpenglow::world {
 class WorldImpl;
 class Evaluator;
 class PhotonStore;
+struct Service;
 /// Makes an Evaluator (evaluator.h) that runs kernels of a world before rays are traced. Several may run at once; the world
 /// outlives them.
 using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop)>;
@@ -20,8 +21,9 @@ using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&,
 class World {
 public:
     /// Returns null after an error that prevents rendering (it is reported). Missing shaders are errors, too, but have fallbacks.
-    static std::shared_ptr<const World> build(const std::shared_ptr<const scene::Frame>&, const Settings&, MakeEvaluator,
-                                              Diagnostics&);
+    /// `services`: what answers shadeops (service.h); must outlive the world.
+    static std::shared_ptr<const World> build(const std::shared_ptr<const scene::Frame>&, const Settings&,
+                                              std::span<const Service> services, MakeEvaluator, Diagnostics&);
     virtual ~World() = default;
     virtual const scene::Frame& frame() const = 0;
     virtual const Settings& settings() const = 0;

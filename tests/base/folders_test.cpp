@@ -119,6 +119,20 @@ TEST(Folders, IncludeTable) {
     EXPECT_GT(files, 8);
 }
 
+// A world is immutable once it is built: threads read it without locks.
+TEST(Folders, NobodyChangesABuiltWorld) {
+    int files = 0;
+    for (const char* folder : {"world", "services", "integrator"})
+        for (const auto& e : fs::directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / "src" / folder)) {
+            ++files;
+            std::ifstream in(e.path());
+            std::string line;
+            for (int n = 1; std::getline(in, line); ++n)
+                EXPECT_EQ(line.find("const_cast"), std::string::npos) << e.path() << ":" << n << " casts const away";
+        }
+    EXPECT_GT(files, 100);
+}
+
 // The integrator is read first: each stage has a header of its own that one page shows, and nobody reaches inside of another.
 TEST(Folders, StagesOfTheIntegratorAreSmall) {
     int headers = 0;

@@ -40,7 +40,7 @@ TEST(LightChannels, NamesAndSources) {
     EXPECT_EQ(v[5].source, Source::Light);
     plan.resolve({3, 1}, d, {"direct", "variance"});
     EXPECT_EQ(plan.pictures[0].variables[3].source, Source::Light);
-    EXPECT_EQ(plan.pictures[0].variables[4].source, Source::Variance);
+    EXPECT_EQ(plan.pictures[0].variables[4].source, *computedOutput("variance"));
     EXPECT_EQ(plan.pictures[0].variables[4].channels, std::vector<std::string>{"variance"});
     EXPECT_EQ(d.all().size(), 0u);
     const auto back = planFromText(planToText(plan, {}), "x", d);

@@ -1,11 +1,8 @@
-// Microfacet reflection of trace(): "blinn", "ashikhmin-shirley", "cook-torrance", "ward". axis = normal. Samples a facet and
-// takes the direction that it mirrors to wo; directions below the surface are lost.
+// What lobes of microfacet reflection share. axis = normal. Samples a facet and takes the direction that it
+// mirrors to wo; directions below the surface are lost.
 #pragma once
 #include "bsdf/kinds/lobe.h"
-#include "shadeops/bsdf/ashikhmin_shirley.h"
-#include "shadeops/bsdf/blinn.h"
-#include "shadeops/bsdf/cook_torrance.h"
-#include "shadeops/bsdf/ward.h"
+#include "shadeops/bsdf/common.h"
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
@@ -33,8 +30,6 @@ AL_INLINE vf withinTurn(vf u) {
     const vf x = u * vf(4093);
     return x - floorLanes(x);
 }
-/// The facet rotated by half a turn about the normal, z.
-AL_INLINE Direction turnedAbout(const Direction& h) { return {-h.x, -h.y, h.z}; }
 
 /// About what facets reflect by Fresnel's law, for choosing between lobes: at the cosine that their mean facet has with the
 /// viewer (a fit for facets of Trowbridge and Reitz). Never 0.
@@ -52,6 +47,7 @@ template <class Facets> struct FacetLobe {
     static constexpr const char* doc = Facets::doc;
     static constexpr bool distribution = true;
     static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface;
+    static constexpr int traits = kCosineOfAxis | kSameFromBoth;
     static AL_MEMBER Pair<Direction> tangentsOf(const Given& p) { return {p.ownTriple(0), p.ownTriple(3)}; }
     static AL_MEMBER void prepare(const Rows& p) {
         p.common(Facets::kFresnel ? reflectanceOfFacets(p) : vf(1), spreadOfRoughness(p), vf(0));
@@ -107,84 +103,5 @@ AL_INLINE Direction visibleInGroove(const Direction& h, const Direction& o, vf u
     return {h.x * mad(x, d.a, -y * d.b), h.x * mad(y, d.a, x * d.b), h.z};
 }
 AL_INLINE vf visibleInGroove(const Facet<vf>& f, vf dn) { return minLanes(divide(dn * f.oh, f.nh * f.no), dn * vf(2)); }
-
-struct BlinnFacets {
-    static constexpr const char* name = "blinn";
-    static constexpr bool kFresnel = true;
-    static constexpr const char* doc = "Facets whose slopes follow a power of the cosine.";
-    static AL_MEMBER void prepare(const Rows& p) {
-        const vf e = exponentOf(p.number(kRowRoughness));
-        p.own(6, e), p.own(7, vf(1) / (e + vf(2)));
-    }
-    static AL_MEMBER FacetValue evaluate(const Given& p, const Facet<vf>& f, const Pair<Direction>&) {
-        const vf e = p.own(6), lobe = blinnLobe(f, e);
-        return {blinn(f, e, lobe, p.triple(kRowEta), p.triple(kRowK)),
-                visibleInGroove(f, (e + vf(2)) * vf(0.5f / kPi) * lobe * f.nh)};
-    }
-    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
-        return visibleInGroove(samplePhong(p.own(7), {u.a, vf(0)}), o, u.b);
-    }
-};
-struct AshikhminFacets {
-    static constexpr const char* name = "ashikhmin-shirley";
-    static constexpr bool kFresnel = true;
-    static constexpr const char* doc = "Anisotropic facets; roughness along udir, roughnessv across.";
-    static AL_MEMBER void prepare(const Rows& p) {
-        const vf eu = exponentOf(p.number(kRowRoughness)), ev = exponentOf(p.number(kRowRoughnessV));
-        p.own(6, eu), p.own(7, ev), p.own(8, (eu + vf(1)) * (ev + vf(1)));
-    }
-    static AL_MEMBER FacetValue evaluate(const Given& p, const Facet<vf>& f, const Pair<Direction>& t) {
-        const vf lobe = ashikhminLobe(f, t, p.own(6), p.own(7)), density = rootLanes(p.own(8)) * vf(0.5f / kPi) * lobe;
-        return {ashikhminShirley(f, p.own(8), lobe, p.triple(kRowEta), p.triple(kRowK)),
-                select(useful(f.nh * f.no * vf(2) - f.oh, f.nh, f.no), density, density * vf(2))};
-    }
-    /// Whether a facet reflects light from above to the viewer. If the sampled one does not, the opposite one is used.
-    static AL_MEMBER vm useful(vf oh, vf nh, vf no) { return (oh > 1e-6f) & (oh * nh * vf(2) > no); }
-    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
-        const vf eu = p.own(6), ev = p.own(7);
-        const Pair<vf> d = elliptic(u.b, rootLanes(ev + vf(1)), rootLanes(eu + vf(1)));
-        const vf e = mad(eu * d.a, d.a, mad(ev * d.b, d.b, vf(1)));
-        const Direction h = withCosine(powLanes(vf(1) - u.a, vf(1) / e), d);
-        return select3(useful(dot(h, o), h.z, o.z), h, turnedAbout(h));
-    }
-};
-struct BeckmannFacets {
-    static constexpr const char* name = "cook-torrance";
-    static constexpr bool kFresnel = true;
-    static constexpr const char* doc = "Facets with Beckmann's distribution of slopes.";
-    static AL_MEMBER void prepare(const Rows& p) {
-        const vf m = sane(p.number(kRowRoughness));
-        p.own(6, m * m);
-    }
-    static AL_MEMBER FacetValue evaluate(const Given& p, const Facet<vf>& f, const Pair<Direction>&) {
-        const vf d = beckmann(f, p.own(6));
-        return {cookTorrance(f, d, p.triple(kRowEta), p.triple(kRowK)), visibleInGroove(f, d * f.nh)};
-    }
-    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction& o) {
-        return visibleInGroove(fromSlope(-p.own(6) * logOfRest(u.a), {vf(1), vf(0)}), o, u.b);
-    }
-};
-struct WardFacets {
-    static constexpr const char* name = "ward";
-    static constexpr bool kFresnel = false;
-    static constexpr const char* doc = "Anisotropic Gaussian slopes; roughness along udir, roughnessv across.";
-    static AL_MEMBER void prepare(const Rows& p) {
-        p.own(6, sane(p.number(kRowRoughness))), p.own(7, sane(p.number(kRowRoughnessV)));
-    }
-    static AL_MEMBER FacetValue evaluate(const Given& p, const Facet<vf>& f, const Pair<Direction>& t) {
-        const vf a = p.own(6), b = p.own(7), lobe = wardLobe(f, t, a, b), v = ward(f, lobe, a, b);
-        return {{v, v, v}, divide(lobe * vf(1 / kPi), a * b * f.nh * f.nh * f.nh)};
-    }
-    static AL_MEMBER Direction draw(const Given& p, const Pair<vf>& u, const Direction&) {
-        const vf a = p.own(6), b = p.own(7);
-        const Pair<vf> d = elliptic(u.b, a, b);
-        const vf x = d.a / a, y = d.b / b;
-        return fromSlope(-logOfRest(u.a) / mad(x, x, y * y), d);
-    }
-};
-using Blinn = FacetLobe<BlinnFacets>;
-using AshikhminShirley = FacetLobe<AshikhminFacets>;
-using CookTorrance = FacetLobe<BeckmannFacets>;
-using Ward = FacetLobe<WardFacets>;
 
 } // namespace alpenglow::bsdf::AL_NAMESPACE

@@ -12,6 +12,8 @@ struct Glass {
     static constexpr const char* doc = "Reflection and refraction at facets with the distribution of Trowbridge and Reitz.";
     static constexpr bool distribution = true;
     static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface | kNeedsNumbers;
+    static constexpr int traits = kCosineOfAxis | kSameFromBoth | kRefracts;
+    static constexpr float eta = kGlassEta;
     // Rows of its own: normal on the viewer's side, both tangents, indices of refraction here and beyond, roughness along and
     // across, weights of both parts.
     enum : int { kSide = 0, kAlong = 3, kAcross = 6, kHere = 9, kThere, kRoughA, kRoughB, kFirst, kSecond };

@@ -11,6 +11,7 @@ struct Hair {
     static constexpr const char* doc = "Light scattered by a fibre that points along axis.";
     static constexpr bool distribution = true;
     static constexpr int needs = kNeedsWo | kNeedsSurface | kNeedsNumbers;
+    static constexpr float eta = kHairEta;
     static constexpr int kLobes = 4, kNumbers = 4; ///< 3Delight manual, 6.4.5.2: up to 4 lobes of 4 numbers
     // Rows of a lobe: weight (0: absent), sine and cosine of its tilt, longitudinal variance, and the three numbers of its bell.
     static AL_MEMBER void prepare(const Rows& p) {

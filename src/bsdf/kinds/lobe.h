@@ -2,6 +2,7 @@
 //
 // A kind is a struct with `name`, `doc`, `distribution`, and
 //     needs                                                     LobeNeed of the rows that it reads
+//     traits, eta                                               LobeTrait and LobeLanes::eta, if not 0
 //     static void prepare(Rows)                                 fills kRowAlbedo, kRowSpread, kRowDelta and its own rows
 //     static Value evaluate(const Given&, const Direction& w)   f cos by channel, and the density of sample() per solid angle
 //     static vm sample(const Given&, const Pair<vf>& u, Direction& w)
@@ -83,8 +84,17 @@ template <class Kind> static void sampleBlock(const float* block, uint32_t lanes
         out.set(kRowDrawn, select(good, vf(1), vf(0)));
     }
 }
+template <class Kind> constexpr int traitsOf() {
+    if constexpr (requires { Kind::traits; }) return Kind::traits;
+    else return 0;
+}
+template <class Kind> constexpr float etaOf() {
+    if constexpr (requires { Kind::eta; }) return Kind::eta;
+    else return 0;
+}
 template <class Kind> constexpr LobeLanes lanesOf() {
-    return {Kind::name, Kind::doc, Kind::distribution, Kind::needs, prepareBlock<Kind>, evaluateBlock<Kind>, sampleBlock<Kind>};
+    return {Kind::name,    Kind::doc,          Kind::distribution,  Kind::needs,      traitsOf<Kind>(),
+            etaOf<Kind>(), prepareBlock<Kind>, evaluateBlock<Kind>, sampleBlock<Kind>};
 }
 
 } // namespace alpenglow::bsdf::AL_NAMESPACE

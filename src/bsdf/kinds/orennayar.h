@@ -10,6 +10,7 @@ struct OrenNayar {
     static constexpr const char* doc = "Rough diffuse surface with normal axis, seen from wo.";
     static constexpr bool distribution = true;
     static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface;
+    static constexpr int traits = kCosineOfAxis | kSameFromBoth;
     static AL_MEMBER void prepare(const Rows& p) { p.common(vf(1), vf(0.5f), vf(0)); }
     static AL_MEMBER Value evaluate(const Given& p, const Direction& w) {
         const vf f = where(aboveHorizon(p, w), orenNayar(w, p.axis(), p.wo(), p.number(kRowRoughness)));

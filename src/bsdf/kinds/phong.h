@@ -10,6 +10,7 @@ struct Phong {
     static constexpr const char* doc = "Phong highlight: f cos = max(0, R.w)^a / pi above the surface.";
     static constexpr bool distribution = false;
     static constexpr int needs = kNeedsWo | kNeedsA;
+    static constexpr int traits = kSameFromBoth;
     static AL_MEMBER void prepare(const Rows& p) {
         const vf a = p.number(kRowA);
         p.common(minLanes(vf(1), vf(2) / (a + vf(1))), spreadOfExponent(a), vf(0));

@@ -13,6 +13,7 @@ struct PhongTrace {
         "SLProject's normalised Phong lobe of exponent a about axis; 1000 and above: one direction.";
     static constexpr bool distribution = false;
     static constexpr int needs = kNeedsHorizon | kNeedsA;
+    static constexpr int traits = kCosineOfHorizon | kAxisIsMirror | kTakesExponent;
     static constexpr float kPerfect = 1000; ///< SLMaterial::PERFECT
     static AL_MEMBER vm sameSide(const Given& p, const Direction& w) {
         const Direction horizon = p.triple(kRowHorizon);

@@ -13,6 +13,7 @@ struct Specular {
     static constexpr const char* doc = "Blinn highlight: f cos = max(0, N.H)^a / pi above the surface.";
     static constexpr bool distribution = false;
     static constexpr int needs = kNeedsWo | kNeedsA;
+    static constexpr int traits = kSameFromBoth;
     static AL_MEMBER void prepare(const Rows& p) {
         const vf a = p.number(kRowA), more = a + vf(1), facing = maxLanes(dot(p.axis(), p.wo()), vf(0.1f));
         p.common(minLanes(vf(1), facing * vf(8) / more), spreadOfExponent(a), vf(0));

@@ -16,16 +16,16 @@ class File : public PictureDriver {
             if (strcasecmp(e.c_str(), foreign) == 0)
                 diags.report(Severity::Warning, Rie::Incapable, s.place,
                              "display \"" + s.name + "\": ." + e + " is not written here; TIFF is written under that name",
-                             std::string("name it ") + kPictureExtensions);
+                             std::string("name it ") + pictureExtensions());
         return Format::Tiff;
     }
 };
 
 } // namespace
 
-const DriverDescriptor fileDriver{
-    {"file"},
-    "A picture file. The extension chooses OpenEXR (.exr), PNG (.png), JPEG (.jpg, .jpeg) or TIFF (.tif, .tiff and all others).",
-    []() -> std::unique_ptr<Driver> { return std::make_unique<File>(); }};
+const DriverDescriptor fileDriver{{"file"},
+                                  "A picture file. The extension chooses the format: " + pictureExtensions() +
+                                      "; TIFF for all others.",
+                                  []() -> std::unique_ptr<Driver> { return std::make_unique<File>(); }};
 
 } // namespace alpenglow::display

@@ -16,7 +16,7 @@ class Framebuffer : public PictureDriver {
 
 const DriverDescriptor framebufferDriver{{"framebuffer", "it", "idisplay", "rgbframebuffer", "x11", "windows"},
                                          "A window. Without a viewer a picture file is written under the given name, by its "
-                                         "extension (OpenEXR, PNG, JPEG, else TIFF), with a message.",
+                                         "extension (as for \"file\"), with a message.",
                                          []() -> std::unique_ptr<Driver> { return std::make_unique<Framebuffer>(); }};
 
 } // namespace alpenglow::display

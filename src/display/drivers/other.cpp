@@ -20,8 +20,7 @@ class Other : public PictureDriver {
 const DriverDescriptor otherDriver{
     {"targa", "tga", "bmp", "bitmap", "gif", "sgi", "iff", "alias", "cineon", "avs", "pic", "dspy_s_avs", "texture"},
     "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by "
-    "its extension (OpenEXR, PNG, JPEG, "
-    "else TIFF), with a message.",
+    "its extension (as for \"file\"), with a message.",
     []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
 
 } // namespace alpenglow::display

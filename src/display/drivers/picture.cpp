@@ -52,15 +52,16 @@ WriteOptions PictureDriver::chooseSamples(Diagnostics& diags) {
         d.message = "display \"" + setup_.name + "\": " + what;
         diags.reportOnce("display:" + setup_.name + ":" + what, d);
     };
-    if (format_ == Format::Exr) {
+    const WrittenFormat& w = written(format_);
+    if (!w.codes) {
         o.compression = stringParam(setup_, "exrcompression", {"none", "rle", "zips", "zip", "piz"}, "zip", diags);
         o.sample =
             stringParam(setup_, "exrpixeltype", {"float", "half"}, "float", diags) == "half" ? Sample::Half : Sample::Float;
         if (setup_.quantizeAsked && !setup_.rgba.floating() && !data())
-            say(Severity::Info, "OpenEXR holds floating point; quantisation does not apply");
+            say(Severity::Info, std::string(w.name) + " holds floating point; quantisation does not apply");
         return o;
     }
-    if (format_ == Format::Jpeg) { // without codes of 8 bits 0 to 1 fills them
+    if (w.bits == 8) { // without codes of 8 bits 0 to 1 fills them
         o.quantised = !setup_.rgba.floating() && !data() && setup_.rgba.min >= 0 && setup_.rgba.max <= 255;
         o.sample = Sample::UInt8;
         return o;
@@ -73,7 +74,7 @@ WriteOptions PictureDriver::chooseSamples(Diagnostics& diags) {
     bool floats = q.floating() || data();
     if (hasOther && hasZ && setup_.z.floating() != q.floating()) {
         floats = true;
-        if (format_ != Format::Png) say(Severity::Info, "depth is floating point, so the whole file is");
+        if (w.floats) say(Severity::Info, "depth is floating point, so the whole file is");
     }
     float top = std::max(q.max, hasZ && hasOther && !setup_.z.floating() ? setup_.z.max : q.max);
     if (!floats && (q.min < 0 || top > 65535)) {
@@ -82,8 +83,8 @@ WriteOptions PictureDriver::chooseSamples(Diagnostics& diags) {
     }
     o.quantised = !floats;
     o.sample = floats ? Sample::Float : top > 255 ? Sample::UInt16 : Sample::UInt8;
-    if (floats && format_ == Format::Png) {
-        say(Severity::Info, "PNG has no floating point; 0 to 1 is written as 16 bits");
+    if (floats && !w.floats) {
+        say(Severity::Info, std::string(w.name) + " has no floating point; 0 to 1 is written as 16 bits");
         o.sample = Sample::UInt16;
     }
     return o;
@@ -111,6 +112,21 @@ bool PictureDriver::close(Diagnostics& diags) {
     codes.data = image_.data;
     quantiseInto(codes);
     return writeImage(setup_.name, codes, o, diags);
+}
+
+namespace {
+class FormatDriver final : public PictureDriver {
+public:
+    explicit FormatDriver(Format f) : its_(f) {}
+
+private:
+    Format format(const DriverSetup&, Diagnostics&) override { return its_; }
+    Format its_;
+};
+} // namespace
+
+DriverDescriptor formatDriver(Format f) {
+    return {written(f).displays, written(f).doc, [f] { return std::make_unique<FormatDriver>(f); }, true, f};
 }
 
 std::string stringParam(const DriverSetup& s, const std::string& name, const std::vector<std::string>& allowed,

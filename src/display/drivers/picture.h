@@ -29,7 +29,8 @@ std::string stringParam(const DriverSetup&, const std::string& name, const std::
                         const std::string& fallback, Diagnostics&);
 
 // The descriptors, one per file.
-extern const DriverDescriptor openexrDriver, tiffDriver, fileDriver, pngDriver, jpegDriver, framebufferDriver, nullDriver,
-    zfileDriver, deepDriver, otherDriver;
+extern const DriverDescriptor fileDriver, framebufferDriver, nullDriver, zfileDriver, deepDriver, otherDriver;
+/// The driver of a format: writes it whatever the name.
+DriverDescriptor formatDriver(Format);
 
 } // namespace alpenglow::display

@@ -1,6 +1,8 @@
-// Shared by imageio.cpp and the codecs. One codec per file; none throws.
+// Shared by imageio.cpp and the codecs. One codec a file.
 #pragma once
 #include "display/imageio.h"
+#include <algorithm>
+#include <initializer_list>
 
 namespace alpenglow::display {
 
@@ -20,25 +22,21 @@ struct DecodeContext {
     bool sizeAllowed(uint64_t width, uint64_t height, uint64_t channels) const;
 };
 
-std::optional<Image> decodeExr(Bytes, const DecodeContext&);
-std::optional<Image> decodeTiff(Bytes, const DecodeContext&);
-std::optional<Image> decodePng(Bytes, const DecodeContext&);
-std::optional<Image> decodeJpeg(Bytes, const DecodeContext&);
-std::optional<Image> decodeZfile(Bytes, const DecodeContext&);
-std::optional<Image> decodeRadiance(Bytes, const DecodeContext&);
-std::optional<Image> decodePixar(Bytes, const DecodeContext&);
-std::optional<Image> decodeTarga(Bytes, const DecodeContext&);
-std::optional<Image> decodeKtx(Bytes, const DecodeContext&);
-/// Whether a file starts like KTX or KTX2.
-bool looksLikeKtx(Bytes);
-/// Whether a file may be a Targa picture, by its complete header.
-bool looksLikeTarga(Bytes);
+/// A picture format: how it is recognised, read and, if it is, written. None of the functions throws.
+struct PictureFormat {
+    const char* name;         ///< for messages
+    bool (*recognise)(Bytes); ///< by the first bytes
+    std::optional<Image> (*decode)(Bytes, const DecodeContext&);
+    /// Writes to an open file; returns false after an error, which is in `why` (or in the file). Null: the format is read only.
+    bool (*encode)(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, std::string& why) = nullptr;
+    const WrittenFormat* written = nullptr; ///< with `encode`
+};
 
-/// Encoders write to an open file; they return false after an error, which is in `why` (or in the file).
-bool encodeExr(OutputFile&, const Image&, const WriteOptions&, std::string& why);
-bool encodeTiff(OutputFile&, const Image&, const WriteOptions&, std::string& why);
-bool encodePng(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, std::string& why);
-bool encodeJpeg(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, std::string& why);
+/// Whether a file begins with these bytes.
+inline bool starts(Bytes b, std::initializer_list<int> magic) {
+    return b.size() >= magic.size() &&
+           std::equal(magic.begin(), magic.end(), b.begin(), [](int m, uint8_t x) { return uint8_t(m) == x; });
+}
 
 /// Indices of the channels that a file of one picture holds: r g b, else the first three or the first one; then a, with `alpha`.
 std::vector<int> pictureChannels(const Image&, bool alpha);

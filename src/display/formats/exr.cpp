@@ -167,7 +167,7 @@ void writeAttributes(const Image& m, Imf::Header& h) {
         if (!key.empty() && key.size() < 200 && h.find(key) == h.end()) h.insert(key, Imf::StringAttribute(value));
 }
 
-std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
     if (std::string why = checkHeaders(b); !why.empty()) return ctx.refuse(why);
     try {
         MemoryStream stream(b, ctx.name);
@@ -231,7 +231,7 @@ std::optional<Image> decodeExr(Bytes b, const DecodeContext& ctx) {
     }
 }
 
-bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, std::string& why) {
+static bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics&, std::string& why) {
     if (m.deep) return encodeDeep(out, m, why);
     try {
         Imath::Box2i dw({m.originX, m.originY}, {m.originX + m.width - 1, m.originY + m.height - 1}), full = dw;
@@ -292,6 +292,18 @@ bool encodeExr(OutputFile& out, const Image& m, const WriteOptions& o, std::stri
         why = e.what();
         return false;
     }
+}
+
+PictureFormat exrFormat() {
+    static const WrittenFormat kWritten{
+        .name = "OpenEXR",
+        .extensions = {"exr"},
+        .codes = false,
+        .displays = {"openexr", "exr"},
+        .doc = "OpenEXR. Floating point whatever Quantize says; AOVs are layers. Parameters: \"string "
+               "exrpixeltype\" float (default) or half; "
+               "\"string exrcompression\" none, rle, zips, zip (default), piz."};
+    return {kWritten.name, [](Bytes b) { return starts(b, {0x76, 0x2f, 0x31, 0x01}); }, decodeExr, encodeExr, &kWritten};
 }
 
 } // namespace alpenglow::display

@@ -136,7 +136,7 @@ bool encode(Encoding& e) {
 
 } // namespace
 
-bool encodeJpeg(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics& diags, std::string& why) {
+static bool encodeJpeg(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics& diags, std::string& why) {
     Encoding e;
     e.image = &m;
     e.index = pictureChannels(m, false);
@@ -155,7 +155,7 @@ bool encodeJpeg(OutputFile& out, const Image& m, const WriteOptions& o, Diagnost
     return ok;
 }
 
-std::optional<Image> decodeJpeg(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodeJpeg(Bytes b, const DecodeContext& ctx) {
     JpegReader r;
     r.ctx = &ctx;
     r.info.err = jpeg_std_error(&r.errors);
@@ -176,6 +176,19 @@ std::optional<Image> decodeJpeg(Bytes b, const DecodeContext& ctx) {
     if (!ok) return ctx.refuse(r.error);
     if (r.warning[0]) ctx.warn(std::string(r.warning) + "; the readable part is used");
     return std::move(r.image);
+}
+
+PictureFormat jpegFormat() {
+    static const WrittenFormat kWritten{
+        .name = "JPEG",
+        .extensions = {"jpg", "jpeg"},
+        .floats = false,
+        .bits = 8,
+        .displays = {"jpeg", "jpg"},
+        .doc = "JPEG. 8 bits, quality 95, colour as sharp as lightness, no alpha: r g b, or one channel. 0 to "
+               "1 is written as 0 to 255 where "
+               "Quantize has no codes of 8 bits."};
+    return {kWritten.name, [](Bytes b) { return starts(b, {0xff, 0xd8, 0xff}); }, decodeJpeg, encodeJpeg, &kWritten};
 }
 
 } // namespace alpenglow::display

@@ -268,7 +268,7 @@ bool rowsUpward(const KtxBytes& f, uint64_t at, uint64_t size) {
 
 } // namespace
 
-bool looksLikeKtx(Bytes b) {
+static bool looksLikeKtx(Bytes b) {
     constexpr uint8_t one[12] = {0xab, 'K', 'T', 'X', ' ', '1', '1', 0xbb, '\r', '\n', 0x1a, '\n'};
     constexpr uint8_t two[12] = {0xab, 'K', 'T', 'X', ' ', '2', '0', 0xbb, '\r', '\n', 0x1a, '\n'};
     return b.size() >= 12 && (std::equal(one, one + 12, b.begin()) || std::equal(two, two + 12, b.begin()));
@@ -374,8 +374,12 @@ static std::optional<Image> decodeKtx2(Bytes b, const DecodeContext& ctx) {
     return all;
 }
 
-std::optional<Image> decodeKtx(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodeKtx(Bytes b, const DecodeContext& ctx) {
     return b[5] == '1' ? decodeKtx1(b, ctx) : decodeKtx2(b, ctx);
+}
+
+PictureFormat ktxFormat() {
+    return {"KTX", [](Bytes b) { return looksLikeKtx(b); }, decodeKtx};
 }
 
 } // namespace alpenglow::display

@@ -224,13 +224,17 @@ private:
 
 } // namespace
 
-std::optional<Image> decodePixar(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodePixar(Bytes b, const DecodeContext& ctx) {
     if (b.size() < headerBytes) return ctx.refuse("it is truncated");
     const PixarReader r{b, b[0] == 0xfa};
     std::string why;
     const PixarHeader h = headerOf(r, why);
     if (!why.empty()) return ctx.refuse(why, why.find("native") != std::string::npos ? Rie::Unimplement : Rie::BadFile);
     return Decoder(r, h, ctx).picture();
+}
+
+PictureFormat pixarFormat() {
+    return {"Pixar's native textures", [](Bytes b) { return starts(b, {0xfa, 0xce}) || starts(b, {0xce, 0xfa}); }, decodePixar};
 }
 
 } // namespace alpenglow::display

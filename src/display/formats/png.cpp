@@ -137,7 +137,7 @@ bool encode(Encoding& e, PngWriter& w, png_structp png, png_infop info) {
 
 } // namespace
 
-std::optional<Image> decodePng(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodePng(Bytes b, const DecodeContext& ctx) {
     PngReader r;
     r.bytes = b;
     r.ctx = &ctx;
@@ -156,7 +156,7 @@ std::optional<Image> decodePng(Bytes b, const DecodeContext& ctx) {
     return ctx.refuse(r.error.empty() ? "out of memory" : r.error);
 }
 
-bool encodePng(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics& diags, std::string& why) {
+static bool encodePng(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics& diags, std::string& why) {
     Encoding e;
     e.image = &m;
     e.index = pictureChannels(m, true);
@@ -186,6 +186,17 @@ bool encodePng(OutputFile& out, const Image& m, const WriteOptions& o, Diagnosti
     png_destroy_write_struct(&png, &info);
     if (!ok) why = w.error.empty() ? "out of memory" : w.error;
     return ok;
+}
+
+PictureFormat pngFormat() {
+    static const WrittenFormat kWritten{.name = "PNG",
+                                        .extensions = {"png"},
+                                        .floats = false,
+                                        .displays = {"png"},
+                                        .doc = "PNG. 8 or 16 bits by Quantize; with Quantize off 0 to 1 is written as 16 bits. "
+                                               "One picture: r g b (a), or one channel (a)."};
+    return {kWritten.name, [](Bytes b) { return starts(b, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'}); }, decodePng, encodePng,
+            &kWritten};
 }
 
 } // namespace alpenglow::display

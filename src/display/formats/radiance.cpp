@@ -34,7 +34,7 @@ bool readRow(Bytes b, size_t& at, size_t width, std::vector<uint8_t>& row) {
 
 } // namespace
 
-std::optional<Image> decodeRadiance(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodeRadiance(Bytes b, const DecodeContext& ctx) {
     size_t at = 0;
     auto line = [&](std::string& s) {
         s.clear();
@@ -67,6 +67,10 @@ std::optional<Image> decodeRadiance(Bytes b, const DecodeContext& ctx) {
         }
     }
     return m;
+}
+
+PictureFormat radianceFormat() {
+    return {"Radiance", [](Bytes b) { return starts(b, {'#', '?'}); }, decodeRadiance};
 }
 
 } // namespace alpenglow::display

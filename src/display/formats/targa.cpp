@@ -71,9 +71,9 @@ bool unpack(Bytes b, size_t at, const TargaHeader& h, std::vector<uint8_t>& pixe
 
 } // namespace
 
-bool looksLikeTarga(Bytes b) { return b.size() > kHeader && TargaHeader(b).good(); }
+static bool looksLikeTarga(Bytes b) { return b.size() > kHeader && TargaHeader(b).good(); }
 
-std::optional<Image> decodeTarga(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodeTarga(Bytes b, const DecodeContext& ctx) {
     const TargaHeader h(b);
     // The fourth byte of a pixel, or the sixteenth bit, is opacity if the header declares it.
     const bool alpha = !h.grey() && (h.colourBits() == 32 ? h.alphaBits() != 0 : h.colourBits() == 16 && h.alphaBits() == 1);
@@ -107,6 +107,10 @@ std::optional<Image> decodeTarga(Bytes b, const DecodeContext& ctx) {
             std::memcpy(to, rgba, size_t(channels) * sizeof(float));
         }
     return m;
+}
+
+PictureFormat targaFormat() {
+    return {"Targa", [](Bytes b) { return looksLikeTarga(b); }, decodeTarga};
 }
 
 } // namespace alpenglow::display

@@ -284,7 +284,7 @@ std::optional<Image> readDirectory(TIFF* t, const DecodeContext& ctx, const Mess
 
 } // namespace
 
-std::optional<Image> decodeTiff(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodeTiff(Bytes b, const DecodeContext& ctx) {
     Messages messages;
     auto options = openOptions(messages);
     MemoryClient client{b};
@@ -335,7 +335,7 @@ void setCompression(TIFF* f, const std::string& name, unsigned bits) {
 
 } // namespace
 
-bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, std::string& why) {
+static bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics&, std::string& why) {
     Messages messages;
     auto options = openOptions(messages);
     unsigned bits = o.sample == Sample::UInt8 ? 8 : o.sample == Sample::UInt16 ? 16 : 32;
@@ -415,6 +415,21 @@ bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, std::str
         return false;
     }
     return true;
+}
+
+PictureFormat tiffFormat() {
+    static const WrittenFormat kWritten{.name = "TIFF",
+                                        .extensions = {"tif", "tiff"},
+                                        .displays = {"tiff"},
+                                        .doc = "TIFF. 8 bits when Quantize's codes end at 255 or below, 16 bits to 65535, floats "
+                                               "when it is off (one = 0). Parameter: "
+                                               "\"string compression\" none, lzw, packbits, zip (default)."};
+    return {kWritten.name,
+            [](Bytes b) {
+                return starts(b, {'I', 'I', 42, 0}) || starts(b, {'M', 'M', 0, 42}) || starts(b, {'I', 'I', 43, 0}) ||
+                       starts(b, {'M', 'M', 0, 43});
+            },
+            decodeTiff, encodeTiff, &kWritten};
 }
 
 } // namespace alpenglow::display

@@ -6,7 +6,7 @@
 
 namespace alpenglow::display {
 
-std::optional<Image> decodeZfile(Bytes b, const DecodeContext& ctx) {
+static std::optional<Image> decodeZfile(Bytes b, const DecodeContext& ctx) {
     constexpr size_t header = 8 + 2 * 64;
     if (b.size() < header) return ctx.refuse("it is truncated");
     bool big = b[0] == 0x2f;
@@ -29,6 +29,11 @@ std::optional<Image> decodeZfile(Bytes b, const DecodeContext& ctx) {
     for (size_t i = 0; i < m.data.size(); ++i) m.data[i] = f32(header + 4 * i);
     m.metadata["textureformat"] = "Shadow";
     return m;
+}
+
+PictureFormat zfileFormat() {
+    return {"zfile", [](Bytes b) { return starts(b, {0x2f, 0x08, 0x67, 0xab}) || starts(b, {0xab, 0x67, 0x08, 0x2f}); },
+            decodeZfile};
 }
 
 } // namespace alpenglow::display

@@ -8,7 +8,7 @@
 
 namespace alpenglow::ri {
 
-/// Who the C functions talk to. C gives them no argument that could say so.
+/// The context that the C functions act on, which is none of their arguments.
 struct Client {
     Target& to;
     SourcePlace place; ///< of what is called; for a program "call" and which one it is
@@ -92,9 +92,9 @@ public:
     }
     /// The same, done by somebody else.
     void finish(const std::function<void(const Call&)>& how);
-    /// Whether arrays of `n` behind these pointers may be looked at: reported otherwise, and the request is dropped.
+    /// Whether arrays of `n` behind these pointers may be read; otherwise that is reported and the request is dropped.
     bool may(int64_t n, std::initializer_list<const void*>);
-    /// Reports, and goes on.
+    /// Reports a problem; the call is still executed.
     void report(Severity, Rie, const std::string& why, const std::string& hint = {});
     /// Reports, and drops the request.
     void drop(Rie, const std::string& why, const std::string& hint = {});
@@ -107,14 +107,14 @@ private:
     /// Adds n elements as numbers, or as strings.
     template <class T> void addNumbers(const T*, int64_t n, double (*number)(T));
     void parameter(const char* token, const void* values, const scene::VariableCounts&, const std::string& category);
-    /// n strings whose addresses stand at `values`; a text that stands there itself is taken as the one string.
+    /// n strings whose addresses are at `values`; a text at that address itself is taken as the one string.
     void stringValues(const char* token, const void* values, int64_t n);
     Client* client_;
     const Request* request_ = nullptr;
     std::vector<Value> values_;
 };
 
-/// What a float of C is as a number of RIB: that of the shortest decimals that mean it, so that a program and a file that say .1
+/// Converts a float of C to a number of RIB: the shortest decimal of that float, so that a program and a file that write .1
 /// make the same scene.
 double numberOf(RtFloat);
 

@@ -68,7 +68,7 @@ void deliverErrors() {
                 s.kept.pop_front();
             }
         }
-        if (handler == RiErrorAbort) std::exit(EXIT_FAILURE); // what was to be said has been printed
+        if (handler == RiErrorAbort) std::exit(EXIT_FAILURE); // the message has been printed
         handler(code, severity, message.data());
     }
 }

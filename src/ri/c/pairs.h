@@ -1,5 +1,5 @@
 // Token-value pairs of the calls of ri.h that end in "...": inside such a function ALPENGLOW_PAIRS(last named parameter) reads
-// them into `pairs`, and ALPENGLOW_LIST hands them to the form that ends in V.
+// them into `pairs`, and ALPENGLOW_LIST passes them to the form that ends in V.
 #pragma once
 #include "ri/c/client.h"
 #include <cstdarg>

@@ -1,5 +1,6 @@
 // ri.h: primitives.
 #include "ri/c/pairs.h"
+#include "ri/c/rifcalls.h"
 #include "scene/scene.h"
 #include <algorithm>
 #include <array>
@@ -276,3 +277,30 @@ ALPENGLOW_BOTH(RiBlobby,
 ALPENGLOW_BOTH(RiGeometry, (RtToken type, ...), (type, ALPENGLOW_LIST), type)
 
 } // extern "C"
+
+std::span<const RifFunction> alpenglow::ri::rifPrimitives() {
+#define RIF(member) ALPENGLOW_RIF(member)
+    static const RifFunction kList[] = {RIF(PolygonV),
+                                        RIF(GeneralPolygonV),
+                                        RIF(PointsPolygonsV),
+                                        RIF(PointsGeneralPolygonsV),
+                                        RIF(PatchV),
+                                        RIF(PatchMeshV),
+                                        RIF(NuPatchV),
+                                        RIF(SubdivisionMeshV),
+                                        RIF(HierarchicalSubdivisionMeshV),
+                                        RIF(SphereV),
+                                        RIF(ConeV),
+                                        RIF(CylinderV),
+                                        RIF(HyperboloidV),
+                                        RIF(ParaboloidV),
+                                        RIF(DiskV),
+                                        RIF(TorusV),
+                                        RIF(PointsV),
+                                        RIF(CurvesV),
+                                        RIF(BlobbyV),
+                                        RIF(GeometryV),
+                                        RIF(VolumeV)};
+#undef RIF
+    return kList;
+}

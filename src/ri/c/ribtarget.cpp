@@ -47,7 +47,7 @@ void RibTarget::execute(const Call& call) {
     check(call.place);
 }
 
-/// Now and then, and once for all: a full disk is told while the program runs.
+/// Called from time to time, so that a full disk is reported while the program runs, and only once.
 void RibTarget::check(const SourcePlace& place) {
     constexpr uint64_t kBytes = 1u << 20;
     if (failed_ || writer_->bytes() < checked_ + kBytes) return;

@@ -12,4 +12,7 @@ namespace alpenglow::ri {
 std::unique_ptr<RequestReceiver> loadRif(const std::string& path, std::vector<std::string> arguments, RequestReceiver& to,
                                          Diagnostics& said, std::string& why);
 
+/// Whether requests are sent to every member of RifFilter that is a function: none is missing in the lists of members.
+bool rifComplete();
+
 } // namespace alpenglow::ri

@@ -1,4 +1,4 @@
-// What calls of C need to know of the graphics state: how long values are, and which blocks are open. A target that executes its
+// The part of the graphics state that calls of C depend on: numbers of values, and open blocks. A target that executes its
 // calls asks its interpreter; one that keeps them (a file, an inline archive) follows them here.
 #pragma once
 #include "ri/call.h"
@@ -11,18 +11,19 @@
 
 namespace alpenglow::ri {
 
+/// Follows the state over the calls that note() gets.
 class Sketch {
 public:
-    Sketch();
+    Sketch(); ///< the state at the begin of a stream
     Sketch(Declarations, int colorSamples, scene::AttributesRef);
 
     Declarations declarations;
     int colorSamples = 3;
-    /// Bases and their steps are right, nothing else is.
+    /// Only bases and their steps are kept up to date.
     scene::AttributesRef attributes;
 
-    /// Takes in a call. What is wrong with it where it stands, or "": an End without its Begin, or of a block in which others are
-    /// open.
+    /// Follows a call. Returns what is wrong with it at this position, for messages, or "": an End without its Begin, or of a
+    /// block in which others are open.
     std::string note(const Call&);
     /// The Begin of the innermost open block; "" when there is none.
     std::string open() const { return blocks_.empty() ? std::string() : std::string(blocks_.back().begin); }

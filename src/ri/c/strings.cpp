@@ -47,7 +47,7 @@ std::optional<std::string> textInsteadOfAddress(const void* value) {
     if (got == 0) return {};
     uintptr_t address = 0;
     std::memcpy(&address, word, sizeof address);
-    if (address == 0 && got == sizeof word) return {}; // a null string: whoever takes it says so
+    if (address == 0 && got == sizeof word) return {}; // a null string: reported where it is used
     if (got == sizeof word && address >= kLowest && address < kHighest && peek(address, &byte, 1) == 1) return {};
     std::string text;
     for (char c; text.size() < size_t(limits::kTokenBytes) && peek(at + text.size(), &c, 1) == 1 && c != 0;) text += c;

@@ -62,7 +62,7 @@ void InterpreterTarget::readArchive(const Call& call, const Lexer::Comments& com
 }
 
 void InterpreterTarget::record(const std::string& type, const std::string& text, const Call& by) {
-    if (type != "verbatim") return; // other records are for whoever reads a file
+    if (type != "verbatim") return; // other records only matter in a file
     in_.expand(text, by);
     executed();
 }

@@ -1,4 +1,4 @@
-// Who executes, or writes, the requests that calls of C become.
+// Receives the requests that calls of the C binding become: executes them, or writes them.
 #pragma once
 #include "ri/c/sketch.h"
 #include "ri/interpreter.h"
@@ -12,23 +12,24 @@
 
 namespace alpenglow::ri {
 
+/// Receiver of the calls of one context of the C binding.
 class Target {
 public:
     virtual ~Target() = default;
-    /// Its parameter list is not yet typed; its place is that of the call.
+    /// Receives a request. Its parameter list is not yet typed; its place is that of the call.
     virtual void execute(const Call&) = 0;
     virtual Reporter& reporter() = 0;
-    /// Nothing is executed any more.
+    /// Whether further requests are ignored.
     virtual bool stopped() const { return false; }
-    /// What tells how long the values of the next call are.
+    // These determine how many values the arrays of the next call have.
     virtual const Declarations& declarations() const = 0;
     virtual int colorSamples() const = 0;
     virtual scene::AttributesRef attributes() = 0;
     /// A number that no light or object of this target has.
     virtual int nextHandle() = 0;
-    /// What requests call the light or object of a number.
+    /// The name that requests use for the light or object of a number.
     std::string handleName(int) const;
-    /// What the program calls it itself ("__handleid").
+    /// Sets the name that the program has chosen ("__handleid").
     void nameHandle(int number, std::string name) { named_[number] = std::move(name); }
     /// From one space to another; nothing where one of them is not known.
     virtual std::optional<Matrix> between(const std::string& from, const std::string& to) = 0;
@@ -72,7 +73,7 @@ private:
     std::optional<Sketch> held_; ///< while calls are kept for later, or passed over
 };
 
-/// `make` between AttributeBegin and AttributeEnd, told that the area is not known. What it throws is reported.
+/// Calls `make` between AttributeBegin and AttributeEnd with an unknown area. Exceptions of it are reported.
 void subdivideHere(Target&, const std::function<void(float)>& make, const Call& by);
 
 } // namespace alpenglow::ri

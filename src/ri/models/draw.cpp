@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What an .obj names lies beside it or below.
+/// Files that an .obj names are in its folder or below.
 std::string beside(const std::string& model, std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     if (name.empty() || name.find('\0') != name.npos) return {};

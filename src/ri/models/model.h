@@ -1,6 +1,6 @@
 // Files of polygons that Geometry draws: .ply (Turk 1994) and .obj (Wavefront 1995), to primitives of ours.
 //
-// What is read is never trusted: counts of a header reserve nothing, memory follows the bytes that are there, a fault is told
+// What is read is never trusted: counts of a header reserve nothing, memory follows the bytes that are there, a fault is reported
 // with its place and what is sound is kept.
 #pragma once
 #include "base/diagnostics.h"
@@ -16,7 +16,7 @@
 
 namespace alpenglow::ri {
 
-/// The first faults of a file are told one by one (limits::kModelMessages), the rest is counted.
+/// The first faults of a file are reported one by one (limits::kModelMessages), the others are counted.
 class ModelLog {
 public:
     using Sink = std::function<void(Severity, Rie, const SourcePlace&, std::string)>;
@@ -50,7 +50,8 @@ bool namedAsModel(const std::string& path);
 /// By the name's end. Empty after an error.
 std::vector<scene::Primitive> readModel(const std::string& path, std::string_view bytes, const ReadLibrary&, ModelLog&);
 
-/// A whole file with what it names: libraries, and maps, whose names become paths where they lie beside it. reads may be null.
+/// A whole file with what it names: libraries, and maps, whose names become paths if they are in the same folder. reads may be
+/// null.
 std::vector<scene::Primitive> readModelFile(const std::string& file, const ModelLog::Sink&,
                                             const std::shared_ptr<ReadLog>& reads);
 

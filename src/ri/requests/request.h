@@ -1,5 +1,5 @@
 // The one description of a request: the reader, the scope check, the documentation and the tests all read it.
-// An entry stands beside its handler, grouped by kind in the files of this folder.
+// An entry and its handler are in the same file of this folder, grouped by kind.
 #pragma once
 #include "base/matrix.h"
 #include "ri/call.h"
@@ -11,8 +11,9 @@ namespace alpenglow::ri {
 
 class Interpreter;
 
+/// The section of the manual that a request belongs to.
 enum class Kind { Structure, Option, Attribute, Shader, Light, Transform, Primitive, Archive, Texture, Other };
-const char* toString(Kind);
+const char* toString(Kind); ///< in small letters, for messages and JSON
 
 /// Where a request may stand. Blocks not named here (Attribute, Transform, Solid, Resource) inherit from what they are in.
 enum Scope : unsigned { kBase = 1, kFrame = 2, kWorld = 4, kObject = 8, kAnywhere = 15 };
@@ -28,6 +29,7 @@ struct ArgSpec {
     std::string name;
 };
 
+/// The description of a request.
 struct Request {
     using Handler = void (*)(Interpreter&, const Call&);
     /// The matrix of a transform request; empty when its arguments are bad (reported).
@@ -57,9 +59,10 @@ const Request* findRequest(std::string_view name);
 /// For hints.
 const std::vector<std::string>& requestNames();
 
-/// Reports a range error of the call, which says `what` is required, unless `good`; returns `good`.
+/// Returns `good`; if it is false, reports a range error of the call. `what`: the requirement, for the message.
 bool within(Interpreter&, const Call&, bool good, const char* what);
 
+// The lists of the files of this folder.
 std::vector<Request> structureRequests();
 std::vector<Request> optionRequests();
 std::vector<Request> attributeRequests();

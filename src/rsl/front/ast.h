@@ -224,9 +224,9 @@ struct Shader {
 
 /// One source file with its includes: shaders (usually one) and functions.
 struct Program {
-    std::map<std::string, Type> primitiveVariables; ///< what getvar() asks for, with the types of the variables it fills
+    std::map<std::string, Type> primitiveVariables; ///< names in getvar(), with the types of the variables that it fills
     bool rispecSpecular = false;                    ///< FrontOptions::rispecSpecular, or by the dialect
-    bool handles = false;                           ///< it uses members or methods of other shaders, or asks for them
+    bool handles = false;                           ///< it uses or queries members or methods of other shaders
     /// Outputs that outputchannel() makes, and their types; without "light:" or "local:".
     std::map<std::string, Type> channels;
     std::vector<std::string> files; ///< Place::file indexes this
@@ -237,7 +237,7 @@ struct Program {
     std::vector<StructSummary> structs;                 ///< in the order of the text
     std::string preprocessed;                           ///< text after includes and macros: part of the cache key
     std::vector<std::string> dependencies;              ///< every file read
-    std::vector<std::shared_ptr<const Plugin>> plugins; ///< in the order in which the text asks for them; calls refer to these
+    std::vector<std::shared_ptr<const Plugin>> plugins; ///< in the order of the text; calls refer to these
 };
 
 /// A structure as the shader names it, with the brackets of an array of them: "S", "S[3]", "S[]".

@@ -216,7 +216,7 @@ void Checker::inferCall(Expr& e, Info& info) {
         int& cost = info.cost[int(c.result.base)];
         cost = std::min(cost, c.cost);
     }
-    // Of a call that can give one value or several, the single value is meant unless an array is wanted.
+    // Of a call that can give one value or several, the single value is chosen unless an array is wanted.
     if (info.array.array) {
         bool single = false;
         for (int c : info.cost) single |= c < kNever;

@@ -47,8 +47,8 @@ struct Known {
         std::set<const Symbol*> needs; ///< if these parameters are the same, too
     };
     const std::set<const Symbol*>& unclassed;
-    std::set<const Symbol*> met{};                 ///< of those, in the expression that is looked at
-    std::map<const Function*, Result> functions{}; ///< that were looked at, as calls of calls would be looked at again and again
+    std::set<const Symbol*> met{};                 ///< of those, in the current expression
+    std::map<const Function*, Result> functions{}; ///< that were examined: calls of calls would be examined many times
 };
 
 /// Is it the same for all points of a batch? That is what gridmin() and gridmax() give, what is made of it, and what functions

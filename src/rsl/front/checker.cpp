@@ -12,7 +12,7 @@ void Checker::run() {
     // Callers usually stand behind what they call: from the end, so that a helper of an uncalled function is not checked twice.
     for (size_t i = main_.functions.size(); i-- > 0;) {
         Function& f = *main_.functions[i];
-        // A header's functions that nobody calls cannot do harm; those of the main file are checked on their own.
+        // A header's functions that are not called cannot do harm; those of the main file are checked on their own.
         if (used_.count(&f) || (f.place.file != 0 && sources_.name(f.place.file) != sources_.name(0))) continue;
         checkStandalone(f);
     }
@@ -176,7 +176,7 @@ void Checker::bindExtern(Symbol& declared) {
     if (!outer && (declared.name == "Ps" || declared.name == "Ns" || declared.name == "Ngs"))
         outer = global(declared.name == "Ngs" ? "Ng" : declared.name.substr(0, 1)); // functions for all kinds
     if (!outer && !kind_) {
-        // In a function that nobody calls it may be a parameter of a shader to come.
+        // In a function that is not called it may be a parameter of a later shader.
         auto s = std::make_unique<Symbol>(declared);
         s->isExtern = false;
         s->origin = Symbol::Origin::ShaderParameter;
@@ -221,7 +221,7 @@ std::vector<std::string> Checker::visibleNames() {
     std::vector<std::string> names = {"PI"};
     for (const auto& s : scopes_)
         for (const auto& [name, symbol] : s.names)
-            if (symbol->type.base != Base::Void) names.push_back(name); // else one that was said to be unknown
+            if (symbol->type.base != Base::Void) names.push_back(name); // otherwise it has been reported as unknown
     for (const auto& [name, symbol] : shaderParameters_) names.push_back(name);
     for (const GlobalVariable& g : globalVariables(kind_.value_or(ShaderKind::Surface))) names.push_back(g.name);
     std::sort(names.begin(), names.end()); // nothing may depend on the order in a hash table

@@ -14,11 +14,11 @@ class Checker {
 public:
     Checker(SourceSet& s, Unit& u, Program& p) : sources_(s), main_(u), program_(p) {}
     void run();
-    /// For lint: warns of the calls that are floats because they stand in arithmetic with a number, where a tuple is wanted.
+    /// For lint: warns of calls that are floats because of arithmetic with a number, although a tuple is wanted.
     void warnOfNumbers();
 
 private:
-    /// One way to read a call.
+    /// One interpretation of a call.
     struct Choice {
         const Shadeop* shadeop = nullptr;
         const Signature* signature = nullptr;
@@ -153,7 +153,7 @@ private:
     std::set<const Symbol*> unclassed_; ///< parameters of functions that are neither uniform nor varying: what they are given
     std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
     std::set<const Shadeop*> reportedUnavailable_;
-    std::set<const Symbol*> toldNotOutput_; ///< parameters that are given values though they are not output: said once
+    std::set<const Symbol*> toldNotOutput_; ///< parameters that are assigned though they are not output: reported once
     struct MadeNumber {
         std::string name;
         Base wanted;
@@ -166,7 +166,7 @@ private:
     int loops_ = 0;
     int instanceDepth_ = 0;
     std::map<const Function*, int> callHeight_; ///< how deep the calls inside of a function are nested
-    bool foreignLight_ = false;                 ///< in the block of a light that stands in another shader, which was reported
+    bool foreignLight_ = false;                 ///< in the block of a light in another kind of shader, which has been reported
     std::unordered_map<const Expr*, Info> infos_;
 };
 

@@ -19,7 +19,7 @@ const ShippedHeader* shippedHeader(std::string_view name);
 std::span<const std::string_view> dialects();
 /// "NAME VALUE" of each macro that the compiler of this dialect predefines. "" is 3Delight's; an unknown name has none.
 std::span<const std::string_view> dialectMacros(std::string_view dialect);
-/// Text that stands before every file of this dialect, for what its compiler has built in and ours calls or does otherwise.
+/// Text that is read before every file of this dialect: definitions of what its compiler has built in and this one has not.
 std::string_view dialectPrelude(std::string_view dialect);
 /// The dialect whose shaders call a function that no other has, and that its macros put another in place of; "" for others.
 std::string_view dialectOfFunction(std::string_view function);

@@ -109,7 +109,7 @@ Checker::Info& Checker::infer(Expr& e) {
     case ExprKind::Tuple:
     case ExprKind::MatrixTuple: {
         int cost = 0;
-        if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser said so
+        if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser has reported it
         for (auto& a : e.args) {
             const Info& i = infer(*a);
             const int c = costTo(i, Base::Float);

@@ -4,7 +4,7 @@
 
 namespace alpenglow::rsl {
 
-/// As compileText(), but what was understood comes back also when there were errors: never null. A tree with errors in it has
+/// As compileText(), but returns the tree even after errors: never null. A tree with errors in it has
 /// calls without a callee and expressions without a type; it is for reading, not for compiling.
 std::unique_ptr<Program> inspectText(const std::string& text, const std::string& name, const FrontOptions&, Diagnostics&);
 

@@ -1,4 +1,4 @@
-// What the displacement() of a class leaves behind for its other methods: two kernels, one object.
+// Members that the displacement() of a class sets and its other methods read: two kernels, one object.
 #pragma once
 #include "rsl/front/ast.h"
 #include <string>

@@ -7,7 +7,7 @@ namespace alpenglow::rsl::front {
 enum class Tok : uint8_t {
     End,
     Identifier,
-    Number, ///< as written, possibly with letters behind it that make it wrong
+    Number, ///< as written, possibly followed by letters, which make it invalid
     String, ///< with its quotes and escapes
     Punct,
     Invalid ///< a character that starts nothing, or a string without end; an error only if it reaches the parser
@@ -55,7 +55,7 @@ private:
     Token ahead_;
 };
 
-/// The characters a string token stands for: quotes removed, \n \t \r \\ \" and octal escapes replaced.
+/// The characters of a string token: quotes removed, \n \t \r \\ \" and octal escapes replaced.
 std::string stringValue(std::string_view token);
 
 } // namespace alpenglow::rsl::front

@@ -330,7 +330,7 @@ private:
     const std::set<const Symbol*>& ignored_;
     const bool surface_, lit_;
     LightReads& reads_;
-    const Symbol** found_ = nullptr;   ///< of a function that is looked into: nothing is told but this
+    const Symbol** found_ = nullptr;   ///< of a function that is searched: the only result, nothing is reported
     std::set<const Symbol*> assigned_; ///< by the statements so far
     std::unordered_map<const Symbol*, size_t> tracked_;
     std::set<const Symbol*> told_;

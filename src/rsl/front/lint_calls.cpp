@@ -189,7 +189,7 @@ void lintCall(const Expr& e, SourceSet& sources) {
         if (given.kind != ExprKind::String) continue;
         name(given.text, given.place, a, sources);
     }
-    // What is not built yet takes its parameters too; only names that miss one by a slip are told.
+    // Shadeops that are not available yet have parameters, too; only names close to one are reported.
     if (e.shadeop->lowering != Lowering::Unavailable) return;
     Names known;
     for (const auto& o : e.shadeop->optional) known.push_back(o.name);

@@ -19,7 +19,7 @@ void lintCondition(const Expr&, SourceSet&);
 /// Warns about the pairs of a gather statement.
 void lintPairs(const Stmt&, SourceSet&);
 
-/// Warns about commas with nothing behind them in the main file.
+/// Warns about commas that nothing follows, in the main file.
 void lintCommas(const std::vector<Token>&, SourceSet&);
 
 } // namespace alpenglow::rsl::front

@@ -1,4 +1,4 @@
-// The kinds of messages of the RSL front end and of the compiler behind it: each has a stable id, whatever its words become.
+// The kinds of messages of the RSL front end and of the compiler behind it: each has a stable id, independent of its wording.
 #pragma once
 #include "base/diagnostics.h"
 #include <span>

@@ -10,7 +10,7 @@ inline bool isWord(char c) { return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 
 /// What stands between the quotes of "did you mean 'x'?", either kind of quotes; or nothing.
 std::string suggestion(const std::string& hint);
 
-/// Gives a message of the compiler that has no hint one, where its line shows what was meant, and takes away one that helps
+/// Adds a hint to a message of the compiler if its line shows what the author intended, and removes one that helps
 /// nobody. `written` is the token that begins at byte `at` of the line.
 void advise(Diagnostic&, const std::string& written, size_t at);
 

@@ -26,14 +26,14 @@ struct Unit {
     std::vector<std::unique_ptr<Function>> functions;
     std::vector<ClassDefinition> classes;
     std::vector<StructType> structs;
-    bool incomplete = false;                 ///< text is missing that nobody has seen: unknown names may be its fault
-    std::unordered_set<std::string> skipped; ///< names in text that was skipped behind an error: it may have declared them
+    bool incomplete = false; ///< text is missing (an include that was not found): it may have declared unknown names
+    std::unordered_set<std::string> skipped; ///< names in text that was skipped after an error, which may have declared them
     /// Whether the name may be declared in text that was not read.
     bool hides(const std::string& n) const {
         missed = missed || incomplete;
         return incomplete || skipped.count(n);
     }
-    mutable bool missed = false; ///< a name was sought that may stand in text that is missing
+    mutable bool missed = false; ///< an unknown name may be declared in text that is missing
 };
 
 class Parser {
@@ -85,7 +85,7 @@ private:
     // declarations (parser.cpp)
     void topLevel();
     void shader(ShaderKind);
-    bool plugin(); ///< at `plugin "name"`, which may stand at file level and where statements stand
+    bool plugin(); ///< at `plugin "name"`, allowed at file level and in place of a statement
     void extends(StructType&);
     void structure(); // parser_objects.cpp
     void shaderObject();
@@ -156,7 +156,7 @@ private:
     bool handle_ = false;                            ///< the last type taken was `shader`
     bool returnsValue_ = false;                      ///< a `return expression` was seen in it
     std::unordered_map<std::string, int> structs_;   ///< index in Unit::structs
-    std::unordered_set<std::string> told_;           ///< what was reported as not yet available
+    std::unordered_set<std::string> told_;           ///< names reported as not yet available
     size_t lastError_ = size_t(-1);
 };
 

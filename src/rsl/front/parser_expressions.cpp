@@ -68,7 +68,7 @@ ExprPtr Parser::effect() {
         return step(postfix(), sign);
     }
     auto e = expression();
-    // The value of i++ is wanted by nobody here: i += 1 is all.
+    // The value of i++ is not used here: it is i += 1.
     if (e->kind == ExprKind::Binary && e->text == "++") return std::move(e->args[0]);
     return e;
 }

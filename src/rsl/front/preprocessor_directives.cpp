@@ -89,7 +89,7 @@ void Preprocessor::pragma(const std::vector<Token>& line) {
     std::string value;
     for (size_t i = 3; i < line.size(); ++i) {
         texts &= isText(i);
-        if (isText(i)) value += stringValue(line[i].text); // texts beside each other are one
+        if (isText(i)) value += stringValue(line[i].text); // adjacent texts are one
     }
     if (!texts && !isText(3)) value = spelled(line, 3);
     if (!texts) sources_.warning(line[3].place, "the value of #pragma annotation stands in quotes; the line is taken as it is");

@@ -112,7 +112,7 @@ struct HeardMember {
     std::string text() const;
 };
 
-// Further string parameters that say how a kernel is to be built.
+// Further string parameters that control how a kernel is built.
 inline constexpr char kBeginQuiet[] = "begin()";     ///< begin() of the class prints nothing
 inline constexpr char kOpacityAlone[] = "opacity()"; ///< what the method opacity() gives is Oi
 /// Under it the number of elements that the scene gave an array of open length.
@@ -127,7 +127,7 @@ struct PairName {
         Send,   ///< a value for a parameter of other shaders: "send:light:NAME", "send:surface:NAME"
         Surface ///< the value of an output of the surface, for lights that ask: "surface:NAME"
     };
-    /// Send: the shaders that the value is for. Loops over lights send to lights, gather() to what its rays meet.
+    /// Send: the shaders that the value is for. Loops over lights send to lights, gather() to the shaders that its rays hit.
     enum class To : uint8_t { Light, Surface, Displacement, Volume };
     Kind kind = Kind::Plain;
     std::string name;
@@ -141,7 +141,7 @@ struct PairName {
     static PairName surface(std::string_view name) { return {Kind::Surface, std::string(name), -1, To::Light, false}; }
     std::string text() const;
 };
-// Pairs that nobody has written: what the compiler says of a call.
+// Pairs that the compiler adds to a call; shaders do not write them.
 inline constexpr char kPairSetUp[] = "__setup";     ///< a loop over lights has a setup
 inline constexpr char kPairOutside[] = "__outside"; ///< outside of loops over lights
 inline constexpr char kPairPart[] = "__part";       ///< of the form of trace() that gives an array: which element
@@ -149,7 +149,7 @@ inline constexpr char kPairOnce[] = "__once";       ///< in construct(): once fo
 inline constexpr char kPairGather[] = "__gather"; ///< of the two sites of a gather, its rays and a turn: its number in the shader
 inline constexpr char kPairPoints[] = "__points"; ///< a call that is answered from point clouds
 inline constexpr char kPairHemisphere[] = "__hemisphere"; ///< a trace() that is an indirectdiffuse(): over the hemisphere
-inline constexpr char kPairHighlight[] = "__highlight";   ///< a loop over lights that stands for specular() and its like
+inline constexpr char kPairHighlight[] = "__highlight";   ///< a loop over lights made from specular() or phong()
 /// An indirectdiffuse() beside diffuse() or loops over lights, and such a diffuse() of a kernel that waits: each brings its part
 /// of the light.
 inline constexpr char kPairApart[] = "__apart";
@@ -164,17 +164,17 @@ bool isLengthResult(std::string_view name);
 /// Whether a result is an element of an array.
 bool isElementResult(std::string_view name);
 
-// Parameters that mean something to the renderer whoever declares them.
+// Parameters of shaders that the renderer reads.
 inline constexpr char kNonDiffuse[] = "__nondiffuse", kNonSpecular[] = "__nonspecular", kCategory[] = "__category";
 inline constexpr char kImportanceSample[] = "__importancesample";
 inline constexpr char kGroup[] = "__group"; ///< of a light: the name of its group in light path expressions
 inline constexpr char kBoundSize[] = "__displacementbound_sphere", kBoundSpace[] = "__displacementbound_coordinatesystem";
 /// Of a light that sends through generateSamples(): ways and light of its samples, and whether their light is traced.
 inline constexpr char kSentL[] = "__sentL", kSentCl[] = "__sentCl", kSentShadows[] = "__sentShadows";
-/// Of a class light with generatePhoton(): what it gives, if it is asked for.
+/// Outputs of a class light with generatePhoton(), if photons are requested.
 inline constexpr char kPhotonFrom[] = "__photonFrom", kPhotonWay[] = "__photonWay", kPhotonPower[] = "__photonPower",
                       kPhotonPdf[] = "__photonPdf";
-/// A parameter of lights that send what emit() says: radiance under every hider.
+/// A parameter of lights that send the radiance of emit() under every hider.
 inline constexpr char kEmits[] = "__emits";
 
 // What gives light where, ir::KernelFacts::blocks.

@@ -55,7 +55,7 @@ void SourceSet::note(Severity severity, Place place, std::string message, std::s
         hint += std::string(hint.empty() ? "" : "; ") + "no shader calls this function, so it does no harm";
     }
     if (severity >= Severity::Error && tooMany()) return;
-    // A function is checked once for each shader that calls it: its faults are told once.
+    // A function is checked once for each shader that calls it: its faults are reported once.
     if (!seen_.insert({{place.file, place.line, place.column, int(severity)}, message}).second) return;
     if (severity >= Severity::Error) ++errors_;
     messages_.push_back({place, severity, std::move(message), std::move(hint), std::move(notes)});

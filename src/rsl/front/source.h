@@ -33,7 +33,7 @@ public:
     /// What is checked has no part in any shader: its errors are warnings.
     bool unused = false;
     int excused = 0; ///< errors that became warnings so
-    /// The text ends before its time, which was reported: what is missing at its end is no other fault.
+    /// The text ends too early, which has been reported; what is missing at its end is not reported again.
     bool cut = false;
     /// Hands all messages over, sorted by place.
     void flush(Diagnostics&);

@@ -176,7 +176,7 @@ Symbol* Lowering::newSymbol(const std::string& name, Type type, Storage storage,
     return owner_->back().get();
 }
 
-/// The variables of one variable of a structure; all that was said about it holds for each.
+/// The variables of one variable of a structure; what was declared of it holds for each.
 std::vector<Symbol*> Lowering::split(const Symbol& s) {
     std::vector<Symbol*> all;
     if (!arrayPossible(s.type, s.place)) return all;
@@ -192,7 +192,7 @@ std::vector<Symbol*> Lowering::split(const Symbol& s) {
     return all;
 }
 
-/// A variable nobody can name; it is declared before the statement.
+/// A variable with a name that shaders cannot use; it is declared before the statement.
 std::string Lowering::temporary(Type type, Place place, Storage storage) {
     const std::string name = "(structure " + std::to_string(++temporaries_) + ")";
     auto d = make(StmtKind::Declare, place);
@@ -227,7 +227,7 @@ ExprPtr Lowering::zero(const Leaf& l, Place place) {
     return list;
 }
 
-/// Members that nobody gives a value.
+/// Members without a value.
 void Lowering::defaults(Type t, Place place, List& pre, List& out) {
     if (t.array > 0) { // those of one, again and again, in a list for each leaf
         List one;

@@ -22,7 +22,7 @@ struct StructType {
     std::vector<StructMember> members;
     std::vector<std::unique_ptr<Function>> methods;
     int base = -1;    ///< the structure it extends, by its number in Unit::structs; its members come first
-    std::string text; ///< the definition as it stands in the source: the same once more is no other structure
+    std::string text; ///< the definition as written: a repeated, equal one is the same structure
     Place place;
 };
 

@@ -54,13 +54,13 @@ private:
     /// The structure that an expression is, or void.
     Type typeOf(const Expr& e) const;
     Symbol* newSymbol(const std::string& name, Type type, Storage storage, Place place);
-    /// The variables of one variable of a structure; all that was said about it holds for each.
+    /// The variables of one variable of a structure; what was declared of it holds for each.
     std::vector<Symbol*> split(const Symbol& s);
-    /// A variable nobody can name; it is declared before the statement.
+    /// A variable with a name that shaders cannot use; it is declared before the statement.
     std::string temporary(Type type, Place place, Storage storage = Storage::Varying);
     void spill(List& values, Type type, List& pre, Place place);
     ExprPtr zero(const Leaf& l, Place place);
-    /// Members that nobody gives a value.
+    /// Members without a value.
     void defaults(Type t, Place place, List& pre, List& out);
     bool hasDefaults(Type t) const;
 
@@ -105,7 +105,7 @@ private:
     static bool path(const Expr& e);
     void checkArguments(Expr& call);
     /// `after`: what must happen when the call is done.
-    /// What the first of the members that stand for a structure says of it.
+    /// What the first of the members of a structure says about the whole.
     static Whole wholeOf(Type, size_t members, bool self);
     void arguments(Expr& call, List& pre, List& after);
     void handleArguments(Expr& call, List& pre);

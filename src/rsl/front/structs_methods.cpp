@@ -191,7 +191,7 @@ void Lowering::methodCall(Expr& e) {
         const std::string near = nearestName(e.text, names);
         sources_.error(e.place, shown(t) + " has no method '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
     }
-    e.text.clear(); // nothing more is said about this call
+    e.text.clear(); // no more messages about this call
 }
 
 /// Where a function of the renderer is asked about a region instead of a point, the parts of the region that it understands.
@@ -218,6 +218,8 @@ void Lowering::regions(Expr& call) {
         adopt(*m, clone(of));
         return m;
     };
+    const Shadeop* const op = findShadeop(call.text);
+    const Footprint over = op ? op->footprint : Footprint{};
     ExprPtr blur;
     for (auto& a : given) {
         if (const Type t = typeOf(*a); t.base != region || t.array || !isStruct(t)) {
@@ -225,8 +227,8 @@ void Lowering::regions(Expr& call) {
             continue;
         }
         std::vector<const char*> parts = {"centre"};
-        if (call.text == "texture" || call.text == "ptexture") parts = {"s1", "t1", "s2", "t2", "s3", "t3", "s4", "t4"};
-        if (call.text == "environment" || call.text == "shadow") parts = {"v1", "v2", "v3", "v4"};
+        if (over.of == Footprint::Of::Surface) parts = {"s1", "t1", "s2", "t2", "s3", "t3", "s4", "t4"};
+        if (over.corners) parts = {"v1", "v2", "v3", "v4"};
         for (const char* p : parts) adopt(call, part(*a, p));
         if (parts.size() > 1 && !blur) blur = part(*a, "blurred");
     }

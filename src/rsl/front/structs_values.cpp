@@ -246,7 +246,7 @@ void Lowering::checkArguments(Expr& call) {
     if (isStruct(wanted) && isStruct(have)) sources_.error(wrong->place, "expected " + shown(wanted) + ", not " + shown(have));
     else if (isStruct(wanted)) sources_.error(wrong->place, "expected a value of " + shown(wanted));
     else sources_.error(wrong->place, shown(have) + " cannot be used here");
-    call.text.clear(); // nothing more is said about this call
+    call.text.clear(); // no more messages about this call
 }
 
 Whole Lowering::wholeOf(Type t, size_t members, bool self) { return {int(t.base) - kFirstStruct, int(members), t.array, self}; }

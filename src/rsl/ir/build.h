@@ -23,7 +23,7 @@ std::unique_ptr<ir::Kernel> buildKernel(const Program&, const Shader&, const Ker
 std::vector<ir::OutputLight> lightOfOutputs(const Program&, const Shader&, const KernelOptions& options);
 
 /// A kernel whose outputs "param:NAME" (arrays: "param:NAME[i]") are the parameters' defaults, in declaration order.
-/// `given`: values of parameters that stand for their defaults.
+/// `given`: values of parameters, in place of their defaults.
 std::unique_ptr<ir::Kernel> buildDefaults(const Program&, const Shader&, Diagnostics&,
                                           const std::vector<ParameterValue>& given = {});
 

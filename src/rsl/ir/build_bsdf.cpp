@@ -1,84 +1,86 @@
-// bsdf(): the distribution is chosen by its name, when the shader is compiled if that is known then. The distributions themselves
-// are runtime code (shadeops/bsdf/).
+// bsdf(): chooses the distribution by its name: when the shader is compiled if the name is known then, else by a branch a name.
+// The formulas are runtime code (shadeops/bsdf/).
 #include "rsl/ir/builder.h"
-#include "shadeops/distributions.h"
 #include <algorithm>
+#include <utility>
 
 namespace alpenglow::rsl::ir {
 
-namespace {
-
-constexpr int kHairLobes = 4, kHairParameters = 4; // 3Delight manual, 6.4.5.2
-
-} // namespace
-
 /// The values of the parameters of one call.
-struct Builder::Distribution {
+struct Builder::DistributionCall {
     Inst *l, *n;
     std::map<std::string, Inst*> values;
     std::vector<Inst*> eta, lobes;
 };
 
-/// The parts of one distribution: one colour, two of glass (reflected, refracted), one a lobe of hair.
-std::vector<Inst*> Builder::distribution(const std::string& name, const Distribution& d) {
-    const auto value = [&](const char* what, Inst* otherwise) {
+/// The argument of a distribution's formula that has this name; `numbers`: the lobe's index, then its numbers but the weight.
+Inst* Builder::distributionArgument(const Distribution& m, const DistributionCall& d, const Parameter& p,
+                                    const std::vector<Inst*>& numbers, size_t& next) {
+    const auto value = [&](const std::string& what, Inst* otherwise) {
         const auto found = d.values.find(what);
         return found == d.values.end() ? otherwise : coerce(found->second, otherwise->kind);
     };
-    const auto triple = [&](Inst* v) { return coerce(v, Kind::Triple); };
-    if (name == "uniform" || name == "cosine")
-        return {triple(runtime1("al_bsdf_" + name, {d.l, d.n, value("samplecone", constant(1.57079637f))}, Kind::Float))};
-    const auto given = d.values.find("wo");
-    Inst* wo = given != d.values.end() ? triple(given->second) : emit(Op::Neg, Kind::Triple, {global("I", Base::Vector)});
-    Inst* roughness = value("roughness", constant(0));
-    Inst* roughnessv = value("roughnessv", roughness);
-    Inst* udir = value("udir", zero(Kind::Triple));
     const auto index = [&](size_t i, float otherwise) {
-        return i < d.eta.size() ? triple(d.eta[i]) : triple(constant(otherwise));
+        Inst* v = coerce(i < d.eta.size() ? d.eta[i] : constant(otherwise), Kind::Triple);
+        return p.type.base == Base::Float ? emit(Op::Extract, Kind::Float, {v}, 0) : v;
     };
-    if (name == "oren-nayar") return {triple(runtime1("al_bsdf_orennayar", {d.l, d.n, wo, roughness}, Kind::Float))};
-    if (name == "blinn") return {runtime1("al_bsdf_blinn", {d.l, d.n, wo, roughness, index(0, 0), index(1, 0)}, Kind::Triple)};
-    if (name == "cook-torrance")
-        return {runtime1("al_bsdf_cooktorrance", {d.l, d.n, wo, roughness, index(0, 0), index(1, 0)}, Kind::Triple)};
-    if (name == "ashikhmin-shirley")
-        return {runtime1("al_bsdf_ashikhminshirley", {d.l, d.n, wo, udir, roughness, roughnessv, index(0, 0), index(1, 0)},
-                         Kind::Triple)};
-    if (name == "ggx" || name == "beckmann")
-        return {runtime1("al_bsdf_" + name, {d.l, d.n, wo, udir, roughness, roughnessv, index(0, 0), index(1, 0)}, Kind::Triple)};
-    if (name == "ward") return {triple(runtime1("al_bsdf_ward", {d.l, d.n, wo, udir, roughness, roughnessv}, Kind::Float))};
-    const auto first = [&](Inst* v) { return emit(Op::Extract, Kind::Float, {v}, 0); };
-    if (name == "glass-ggx") {
-        std::vector<Inst*> parts = runtime(
-            "al_bsdf_glassggx", {d.l, d.n, wo, udir, roughness, roughnessv, first(index(0, 1.5f)), constant(0), constant(0)},
-            {Kind::Float, Kind::Float});
-        for (size_t i = 0; i < 2; ++i) {
-            if (i < d.lobes.size()) parts[i] = emit(Op::Mul, Kind::Float, {parts[i], d.lobes[i]});
-            parts[i] = triple(parts[i]);
+    if (p.output) return constant(0);
+    if (p.name == "l") return d.l;
+    if (p.name == "n" || p.name == "tip") return d.n;
+    if (p.name == "wo") {
+        const auto given = d.values.find("wo");
+        return given != d.values.end() ? coerce(given->second, Kind::Triple)
+                                       : emit(Op::Neg, Kind::Triple, {global("I", Base::Vector)});
+    }
+    if (p.name == "cone") return value("samplecone", constant(1.57079637f));
+    if (p.name == "roughnessv") return value(p.name, value("roughness", constant(0)));
+    if (p.name == "eta") return index(0, m.eta);
+    if (p.name == "k") return index(1, 0);
+    if (!m.lobe.empty() && (p.name == "lobe" || next > 0) && next < numbers.size()) return numbers[next++];
+    return value(p.name, p.type.base == Base::Float ? constant(0) : zero(Kind::Triple)); // roughness, udir, absorption
+}
+
+/// The parts of one distribution, each a color: its result or its outputs, for each lobe if it has lobes.
+std::vector<Inst*> Builder::distribution(const Distribution& m, const DistributionCall& d) {
+    const Signature& s = m.formula.signatures[0];
+    const auto call = [&](const std::vector<Inst*>& numbers) {
+        std::vector<Inst*> args;
+        std::vector<Kind> results;
+        size_t next = 0;
+        if (s.result.base != Base::Void) results.push_back(kindOf(s.result));
+        for (const Parameter& p : s.parameters) {
+            args.push_back(distributionArgument(m, d, p, numbers, next));
+            if (p.output) results.push_back(kindOf(p.type));
+        }
+        return runtime(s.symbol, std::move(args), std::move(results));
+    };
+    if (m.lobe.empty()) {
+        std::vector<Inst*> parts = call({});
+        for (size_t i = 0; i < parts.size(); ++i) {
+            if (m.parts > 1 && i < d.lobes.size()) parts[i] = emit(Op::Mul, Kind::Float, {parts[i], d.lobes[i]});
+            parts[i] = coerce(parts[i], Kind::Triple);
         }
         return parts;
     }
-    // Hair. Weights above 1 are scaled down together.
-    std::vector<Inst*> lobes = d.lobes;
-    if (lobes.empty())
-        for (int lobe = 0; lobe < 3; ++lobe)
-            lobes.insert(lobes.end(), {constant(1), constant(0), constant(0.3f), constant(0.3f)});
-    const size_t count = std::min<size_t>(kHairLobes, lobes.size() / kHairParameters);
+    std::vector<Inst*> lobes = d.lobes; // Weights above 1 are scaled down together.
+    for (int i = 0; d.lobes.empty() && i < m.lobes; ++i)
+        for (float number : m.lobe) lobes.push_back(constant(number));
+    const size_t count = std::min(static_cast<size_t>(m.parts), lobes.size() / m.lobe.size());
     Inst* largest = constant(1);
-    for (size_t i = 0; i < count; ++i) largest = runtime1("al_max_f", {largest, lobes[i * kHairParameters]}, Kind::Float);
+    for (size_t i = 0; i < count; ++i) largest = runtime1("al_max_f", {largest, lobes[i * m.lobe.size()]}, Kind::Float);
     std::vector<Inst*> parts;
     for (size_t i = 0; i < count; ++i) {
-        const auto number = [&](size_t k) { return lobes[i * kHairParameters + k]; };
-        Inst* v = runtime1("al_bsdf_hair",
-                           {d.l, d.n, wo, udir, first(index(0, 1.55f)), value("absorption", zero(Kind::Triple)),
-                            constant(static_cast<float>(i)), number(1), number(2), number(3)},
-                           Kind::Triple);
-        parts.push_back(emit(Op::Mul, Kind::Triple, {v, triple(emit(Op::Div, Kind::Float, {number(0), largest}))}));
+        std::vector<Inst*> numbers(lobes.begin() + std::ptrdiff_t(i * m.lobe.size()),
+                                   lobes.begin() + std::ptrdiff_t((i + 1) * m.lobe.size()));
+        Inst* weight = std::exchange(numbers[0], constant(static_cast<float>(i)));
+        Inst* v = coerce(call(numbers)[0], Kind::Triple);
+        parts.push_back(emit(Op::Mul, Kind::Triple, {v, coerce(emit(Op::Div, Kind::Float, {weight, largest}), Kind::Triple)}));
     }
     if (parts.empty()) parts.push_back(zero(Kind::Triple));
     return parts;
 }
 
-/// A name that is known when the shader runs is none: said then, and 0.
+/// Reports, when the shader runs, that the name is no distribution; the value is 0.
 Inst* Builder::noSuchDistribution(Inst* name, const Expr& e) {
     Site s;
     s.op = "complaint";
@@ -91,7 +93,7 @@ Inst* Builder::noSuchDistribution(Inst* name, const Expr& e) {
     return zero(Kind::Triple);
 }
 
-/// Of a call that sends rays: an error where it names a distribution that there is not.
+/// Reports an error if a call that sends rays names an unknown distribution.
 void Builder::checkDistribution(const Expr& e) {
     const bool hemisphere = e.shadeop->name == "occlusion" || e.shadeop->name == "indirectdiffuse";
     for (const NamedArg& p : e.pairs) {
@@ -108,7 +110,7 @@ void Builder::checkDistribution(const Expr& e) {
 /// The value of a call of bsdf() that gives one colour, or the parts of one that gives an array.
 std::vector<Inst*> Builder::bsdf(const Expr& written) {
     const Expr& e = withNames(written);
-    Distribution d;
+    DistributionCall d;
     d.l = expr(*e.args[0], Kind::Triple);
     d.n = expr(*e.args[1], Kind::Triple);
     Inst* name = nullptr;
@@ -137,29 +139,30 @@ std::vector<Inst*> Builder::bsdf(const Expr& written) {
     };
     std::vector<Inst*> result;
     const std::string known = !name ? "uniform" : name->op == Op::ConstString ? name->text : "";
+    const Distribution* const m = findDistribution(known);
     if (name && name->op != Op::ConstString) { // one branch a name
         if (parted)
             warn(e.place,
                  "bsdf() with parts needs a distribution that is known when the shader is compiled; all is in the first");
         const std::function<Inst*(size_t)> from = [&](size_t i) -> Inst* {
-            if (i == std::size(kDistributions)) return noSuchDistribution(name, e);
-            Inst* is = emit(Op::Equal, Kind::Bool, {name, leaves_.string(kDistributions[i])});
+            if (i == distributions().size()) return noSuchDistribution(name, e);
+            const Distribution& one = distributions()[i];
+            Inst* is = emit(Op::Equal, Kind::Bool, {name, leaves_.string(one.name)});
             return branch(
-                is, [&] { return std::vector<Inst*>{sum(distribution(kDistributions[i], d))}; },
+                is, [&] { return std::vector<Inst*>{sum(distribution(one, d))}; },
                 [&] { return std::vector<Inst*>{from(i + 1)}; })[0];
         };
         result = {from(0)};
-    } else if (!isDistribution(known, false)) {
+    } else if (!m) {
         error(e.place, noDistribution("bsdf", known) + "; " + knownDistributions());
         result = {zero(Kind::Triple)};
     } else {
-        result = distribution(known, d);
+        result = distribution(*m, d);
         if (!parted) result = {sum(result)};
-        else if (known != "glass-ggx" && known != "hair")
-            warn(e.place, "bsdf(): \"" + known + "\" has no parts; all is in the first");
+        else if (m->parts == 1) warn(e.place, "bsdf(): \"" + known + "\" has no parts; all is in the first");
     }
     // The plane of "horizon" lets through what lies on the same side of it as of the surface; a fibre has no surface.
-    if (const auto h = d.values.find("horizon"); h != d.values.end() && known != "hair") {
+    if (const auto h = d.values.find("horizon"); h != d.values.end() && (!m || m->surface)) {
         Inst* plane = coerce(h->second, Kind::Triple);
         Inst* side = emit(Op::Mul, Kind::Float, {dot(plane, d.l), dot(d.n, d.l)});
         Inst* open = emit(

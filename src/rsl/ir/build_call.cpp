@@ -136,7 +136,7 @@ Inst* Builder::shadeopCall(const Expr& e) {
         return service(e, Op::Request);
     if (options_.path && op.name == "ambient") return service(e, Op::Request);
     if (op.name == "filterstep" && !e.pairs.empty()) return filterstep(e);
-    if (e.function) { // what is said about its text is said where it is called
+    if (e.function) { // messages about its text get the place of the call
         const std::optional<Place> before = ownText_;
         if (!ownText_) ownText_ = e.place;
         const size_t sites = k_.sites.size();

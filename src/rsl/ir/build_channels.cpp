@@ -184,7 +184,7 @@ Inst* Builder::outputChannel(const Expr& e) {
     return constant(0);
 }
 
-/// writeaov(name, value): an output of that name and type is given the value; where there is none nobody asks for it.
+/// writeaov(name, value): gives the value to an output of that name and type; if there is none, no display shows it.
 Inst* Builder::writeAov(const Expr& e) { return outputChannel(e); }
 
 Inst* Builder::readAov(const Expr& e) {

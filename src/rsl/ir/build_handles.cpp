@@ -273,7 +273,7 @@ Inst* Builder::methodCall(const Expr& e) {
                 return lightMethod(e, leaves_.string(c.handle)); // with its samples and shadows
             const Function* f = methodOf(i, e);
             if (!certain_ && isSelf(i) && (!f || !c.shader->publics.count(e.text)))
-                return zero(kind); // one of the others is meant
+                return zero(kind); // another shader of the handle has it
             const auto has = [&](size_t other) {
                 return methodOf(other, e) && instances_[other].binding->shader->publics.count(e.text);
             };

@@ -59,7 +59,7 @@ Type Builder::typeOfMember(const Expr& e) {
 /// The shader of this turn of forHandle() lacks what is asked. Where the handle may mean another, which has it, that is said when
 /// the shader runs and comes here with this one; else it is an error. `lack`: what comes behind the shader's name.
 void Builder::lacks(const Place& place, size_t i, const std::string& lack, const std::function<bool(size_t)>& has) {
-    if (!certain_ && isSelf(i)) return; // one of the others is meant
+    if (!certain_ && isSelf(i)) return; // another shader of the handle has it
     const CoShader& c = *instances_[i].binding;
     const std::string text = "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") " + lack;
     bool another = c.light && !certain_; // lights of other kinds may have it, which are asked when the shader runs

@@ -28,7 +28,7 @@ bool Builder::runPattern(size_t i) {
     const CoShader& c = *instances_[i].binding;
     beginInstance(i);
     if (!c.shader->object && c.shader->body) {
-        // What it writes to Ci and its like is nobody's.
+        // What it writes to Ci and other globals is not used.
         std::map<std::string, Inst*> before;
         for (const auto& [name, n] : globals_) before[name] = env_[static_cast<size_t>(n)];
         enterInstance(i);
@@ -78,7 +78,7 @@ Inst* Builder::connectedOutput(const Connected& c, const Symbol& to) {
         }
         return keeps("gives '" + c.output + "' as " + toString(s->type) + ", not " + toString(to.type.element()));
     }
-    return nullptr; // there is no such pattern, which whoever bound it has said
+    return nullptr; // there is no such pattern, which was reported when it was bound
 }
 
 /// What a connection gives for a parameter, or for an element of it; null: it has none. strings: what the shader was given.

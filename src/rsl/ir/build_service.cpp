@@ -21,7 +21,7 @@ Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args)
     std::string out;
     if (op == "concat") {
         for (const Inst* a : args) out += a->text;
-        if (out.size() > limits::kTokenBytes) return nullptr; // cut off, with a word, when it runs
+        if (out.size() > limits::kTokenBytes) return nullptr; // cut off and reported when it runs
         return leaves_.string(out);
     }
     if (op != "format" || args.empty() || args[0]->op != Op::ConstString) return nullptr;
@@ -55,26 +55,28 @@ Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args)
 std::vector<Inst*> Builder::traceParts(const Expr& written) {
     const Expr& e = withNames(written);
     std::string name = "uniform";
-    size_t lobes = 3;
+    std::optional<int> numbers; // of "lobeparameters"
     for (const NamedArg& p : e.pairs) {
         if (!p.value) continue;
         if (p.name == "distribution" || p.name == "bsdf") {
             const Inst* v = expr(*p.value, Kind::String);
             name = v->op == Op::ConstString ? v->text : "";
         } else if (p.name == "lobeparameters" && p.value->type.array) {
-            lobes = static_cast<size_t>(arrayLength(array(*p.value)) / 4);
+            numbers = arrayLength(array(*p.value));
         }
     }
-    const size_t count = name == "glass-ggx" ? 2 : name == "hair" ? std::clamp<size_t>(lobes, 1, 4) : 1;
-    if (count == 1 && name != "hair") {
+    const Distribution* const m = findDistribution(name);
+    if (!m || m->parts == 1) {
         warn(e.place,
              name.empty()
                  ? "trace() with parts needs a distribution that is known when the shader is compiled; all is in the first"
                  : "trace(): \"" + name + "\" has no parts; all is in the first");
         return {service(e, Op::Request)};
     }
+    int count = m->parts;
+    if (!m->lobe.empty()) count = std::clamp(numbers ? *numbers / static_cast<int>(m->lobe.size()) : m->lobes, 1, m->parts);
     std::vector<Inst*> parts;
-    for (size_t i = 0; i < count; ++i) parts.push_back(service(e, Op::Request, static_cast<int>(i)));
+    for (int i = 0; i < count; ++i) parts.push_back(service(e, Op::Request, i));
     return parts;
 }
 
@@ -170,25 +172,20 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
         Inst* step = coerce(global(size, Base::Float), v->kind);
         return isConst(step, 0.0f) ? zero(v->kind) : emit(Op::Mul, v->kind, {emit(d, v->kind, {v}), step});
     };
-    const bool faces = op.name == "ptexture";
-    if ((op.name == "texture" && all.size() <= 3) || (faces && all.size() <= 5)) {
-        Inst* st[2];
-        if (all.size() == (faces ? 5 : 3)) {
-            st[0] = all[all.size() - 2];
-            st[1] = all[all.size() - 1];
-        } else {
-            st[0] = global("s", Base::Float);
-            st[1] = global("t", Base::Float);
-            addArgument(s, args, st[0], real);
-            addArgument(s, args, st[1], real);
-        }
+    const Footprint& over = op.footprint;
+    if (over.of == Footprint::Of::Surface && (all.size() == over.first || all.size() == over.first + 2)) {
+        const bool given = all.size() > over.first;
+        Inst* const st[] = {given ? all[over.first] : global("s", Base::Float),
+                            given ? all[over.first + 1] : global("t", Base::Float)};
+        for (Inst* c : st)
+            if (!given) addArgument(s, args, c, real);
         for (int d = 0; d < 2; ++d)
             for (Inst* c : st) addArgument(s, args, footprint(c, d == 0 ? "du" : "dv", d == 0 ? Op::Du : Op::Dv), real);
-        if (faces && all.size() < 5) addArgument(s, args, constant(1), real); // those of the face, where it has some
+        if (over.marks && !given) addArgument(s, args, constant(1), real);
     }
-    if (((op.name == "environment" || op.name == "shadow") && all.size() == 2) || (op.name == "texture3d" && all.size() == 3)) {
-        addArgument(s, args, footprint(all[1], "du", Op::Du), vector);
-        addArgument(s, args, footprint(all[1], "dv", Op::Dv), vector);
+    if (over.of == Footprint::Of::Space && all.size() == over.count) {
+        addArgument(s, args, footprint(all[over.first], "du", Op::Du), vector);
+        addArgument(s, args, footprint(all[over.first], "dv", Op::Dv), vector);
     }
     if (kind == Op::Request && op.name == "ambient") addArgument(s, args, global("N", Base::Normal), {Base::Normal, 0});
     if (e.channel) {

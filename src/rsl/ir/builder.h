@@ -2,6 +2,7 @@
 #pragma once
 #include "rsl/ir/build.h"
 #include "rsl/ir/edit.h"
+#include "shadeops/distributions.h"
 #include <cmath>
 #include <deque>
 #include <fmt/format.h>
@@ -299,7 +300,7 @@ private:
     void receive(const Receiver&, std::span<Inst* const> values, Inst* found);
     Inst* readPrimitiveVariable(const Expr&);
     void everyElement(int count, const std::function<void(Inst* at)>& each);
-    // build_left.cpp: members that displacement() leaves behind
+    // build_left.cpp: members that displacement() passes on
     Inst* leftBehind(const std::string& name, Type&);
     void hearMembers();
     void objectBody(bool opacityOnly);
@@ -333,9 +334,11 @@ private:
     Inst* readAov(const Expr&);
 
     // build_bsdf.cpp
-    struct Distribution;
+    struct DistributionCall;
     std::vector<Inst*> bsdf(const Expr&);
-    std::vector<Inst*> distribution(const std::string& name, const Distribution&);
+    Inst* distributionArgument(const Distribution&, const DistributionCall&, const Parameter&, const std::vector<Inst*>& numbers,
+                               size_t& next);
+    std::vector<Inst*> distribution(const Distribution&, const DistributionCall&);
     Inst* noSuchDistribution(Inst* name, const Expr&);
     void checkDistribution(const Expr&);
 

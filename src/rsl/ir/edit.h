@@ -30,7 +30,7 @@ bool isMovable(const Kernel&, const Inst&);
 bool isConst(const Inst* inst, float value);
 inline bool isConst(const Inst* inst) { return inst->op == Op::Const; }
 
-/// Constants and inputs: they stand at the front of the kernel and are known everywhere, in functions too.
+/// Constants and inputs: they are at the front of the kernel and visible everywhere, also in functions.
 inline bool isLeaf(const Inst* i) {
     return i->op == Op::Const || i->op == Op::ConstString || i->op == Op::Input || i->op == Op::ArrayInput;
 }
@@ -38,7 +38,7 @@ inline bool isLeaf(const Inst* i) {
 /// Number of uses of each instruction, by id (arguments and yields).
 std::vector<uint32_t> countUses(const Kernel&);
 
-/// Replacements by id, with path compression; null entries stand for themselves.
+/// Replacements by id, with path compression; null entries are not replaced.
 class Replacements {
 public:
     Inst* operator()(Inst* inst) {
@@ -80,7 +80,7 @@ public:
     Inst* constant(Kind, const std::vector<float>&);
     Inst* string(const std::string&);
     void add(Inst* leaf) { front_.push_back(leaf); }
-    /// Puts what was made before the body of the kernel.
+    /// Inserts what was made before the body of the kernel.
     void flush();
 
 private:

@@ -134,7 +134,7 @@ struct Site {
 struct KernelFacts {
     bool affine = true; ///< every Request was turned into Emit
     std::string whyNot; ///< the first place that is not affine, in words
-    /// Something that keeps the kernel from being affine: the call whose result is meant, and why.
+    /// Something that keeps the kernel from being affine: the call whose result is concerned, and why.
     struct NonLinear {
         std::string op, why;
         Place place;

@@ -10,7 +10,7 @@
 namespace alpenglow::rsl::jit {
 
 struct KernelFile {
-    std::string key; ///< what it is stored under in the cache
+    std::string key; ///< its key in the cache
     std::vector<ir::Input> inputs;
     std::vector<ir::OutputSlot> outputs;
     std::vector<ir::Site> sites;
@@ -20,7 +20,7 @@ struct KernelFile {
     int strip = 0;
     bool suspending = false;
     uint64_t localBytes = 0;          ///< of KernelCall::memory
-    std::vector<Diagnostic> messages; ///< warnings of the build, said again when the kernel comes from the cache
+    std::vector<Diagnostic> messages; ///< warnings of the build, repeated when the kernel comes from the cache
     std::string object;
 };
 

@@ -1,4 +1,5 @@
-// The door to the LLVM module (libalpenglow_jit.so), which is loaded on the first kernel that no cache has. No LLVM types here.
+// The interface of the LLVM module (libalpenglow_jit.so), which is loaded for the first kernel that no cache has. No LLVM types
+// here.
 #pragma once
 #include "rsl/ir/ir.h"
 #include <cstddef>
@@ -66,8 +67,8 @@ using ModuleVersionFn = const char* (*)();
 std::string moduleFile();
 /// The version of LLVM, "19.1.7", for which the module is loaded; "" and the error when that fails.
 std::string llvmVersion(std::string& error);
-/// Compiles through the module, loading it when needed. The error says where it was looked for. Throws std::bad_alloc when memory
-/// is short.
+/// Compiles through the module, loading it when needed. The error names the places where it was searched. Throws std::bad_alloc
+/// when memory is short.
 void compileWithModule(const ModuleRequest&, ModuleResult&);
 /// True once the module, and with it LLVM, is in the process.
 bool moduleLoaded();

@@ -1,4 +1,4 @@
-// Third part of the affine proof: what is left of Ci without the results.
+// Third part of the affine proof: the value of Ci without the results.
 #pragma once
 #include "rsl/passes/affine_analysis.h"
 

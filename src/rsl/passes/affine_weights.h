@@ -20,7 +20,7 @@ public:
     Weights(Kernel& kernel, const Dependence& dependence) : k(kernel), d(dependence) {}
 
     /// Puts an Emit in place of every Request that reaches `ci` (an Output of Kernel::light, or null for none). The Requests
-    /// stay. False when a weight cannot be had: then why() and stuckSite() tell.
+    /// stay. Returns false if a weight cannot be computed; why() and stuckSite() have the reason.
     bool run(Inst* ci);
     /// Adds Output number `output`, the weight of the inputs together in `ci`. Dependence on them: analyseInput. False as above.
     bool runToInputs(Inst* ci, const std::vector<Inst*>& inputs, int output);

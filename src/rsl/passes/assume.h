@@ -1,4 +1,4 @@
-// What a branch and a loop's test say about the booleans they were asked of.
+// What the condition of a branch or a loop implies about other booleans inside of it.
 #pragma once
 #include "rsl/ir/ir.h"
 

@@ -1,4 +1,4 @@
-// Dead code: instructions without effect whose results nobody uses, results and carried variables nobody needs.
+// Dead code: instructions without effect whose results are not used, and results and carried variables that are not needed.
 #pragma once
 #include "rsl/ir/ir.h"
 

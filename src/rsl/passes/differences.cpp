@@ -82,7 +82,7 @@ private:
                 break;
             }
         Neighbour next{};
-        if (!stepFrom(n, v, next)) return nullptr; // said by orderDerivatives()
+        if (!stepFrom(n, v, next)) return nullptr; // reported by orderDerivatives()
         Inst *a = value(x, next), *b = value(x, n);
         if (a == b) return nullptr;
         Inst* per = perStep(v);
@@ -94,7 +94,7 @@ private:
         return d ? d : constant(i->kind, 0);
     }
 
-    // Instructions beside the point
+    // Instructions at neighbours of the point
 
     void copyAt(Inst* i, Neighbour n) {
         if (i->op == Op::Du || i->op == Op::Dv) return set(i, n, differenceOf(i, n));

@@ -4,7 +4,7 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Gives each Loop a site, behind all others, that generated code calls for the points that reach the limit: a complaint with the
+/// Gives each Loop a site, after all others, that generated code calls for the points that reach the limit: a complaint with the
 /// place of the loop. The points then go on behind the loop, with the values of that moment. Last of all passes; once a kernel.
 void limitLoops(Kernel&);
 

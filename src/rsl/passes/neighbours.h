@@ -1,4 +1,4 @@
-// Which values of a kernel are looked at beside the point itself, for derivatives that are differences (differences.h).
+// Which values of a kernel are needed at neighbours of a point, for derivatives by differences (differences.h).
 #pragma once
 #include "rsl/ir/ir.h"
 #include <map>
@@ -9,7 +9,7 @@
 
 namespace alpenglow::rsl::ir {
 
-/// Where a value is looked at: at the point, or so many steps of du and dv from it. Derivatives of third order are not taken.
+/// Where a value is needed: at the point, or so many steps of du and dv from it. Derivatives of third order are not taken.
 enum class Neighbour : uint8_t { Here, U, V, UU, UV, VV };
 inline constexpr int kNeighbours = 6;
 inline constexpr int kStepsU[kNeighbours] = {0, 1, 0, 2, 1, 0}, kStepsV[kNeighbours] = {0, 0, 1, 0, 1, 2};

@@ -1,4 +1,4 @@
-// Values of a kernel beside the point while differences are taken: where each stands, and what inputs are there
+// Values of a kernel at neighbours of the point while differences are taken: where each stands, and what inputs are there
 // (differences.cpp).
 #pragma once
 #include "rsl/ir/edit.h"
@@ -143,7 +143,7 @@ protected:
     Kernel& k_;
     Motion motion_;
     Leaves leaves_;
-    Replacements done_; ///< what stands for each Du and Dv at the point
+    Replacements done_; ///< the replacement of each Du and Dv at the point
     std::vector<Scope*> scopes_;
 
 private:

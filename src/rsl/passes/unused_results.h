@@ -1,4 +1,4 @@
-// Results of rays that nobody reads: who answers a request need not find out what is not asked.
+// Results of rays that are not read: the answer to a request need not compute them.
 #pragma once
 #include "rsl/ir/ir.h"
 

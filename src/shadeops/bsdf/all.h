@@ -1,4 +1,4 @@
-// The distributions of bsdf() (docs/design/rsl.md, "Distributions"), one file each, and their descriptors.
+// The list of the distributions of bsdf() and trace() (docs/design/rsl.md, "Distributions"), one file each.
 #pragma once
 #include "shadeops/bsdf/ashikhmin_shirley.h"
 #include "shadeops/bsdf/beckmann.h"
@@ -14,9 +14,21 @@
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
+std::span<const Distribution> distributions() {
+    static const std::vector<Distribution> list = {bsdfUniform(),          bsdfCosine(),       bsdfOrenNayar(), bsdfBlinn(),
+                                                   bsdfAshikhminShirley(), bsdfCookTorrance(), bsdfWard(),      bsdfGgx(),
+                                                   bsdfBeckmann(),         bsdfGlass(),        bsdfHair()};
+    return list;
+}
+const Distribution* findDistribution(std::string_view name) {
+    for (const Distribution& d : distributions())
+        if (d.name == name) return &d;
+    return nullptr;
+}
 std::vector<Shadeop> bsdfShadeops() {
-    return {bsdfUniform(), bsdfCosine(),   bsdfOrenNayar(), bsdfBlinn(), bsdfAshikhminShirley(), bsdfCookTorrance(), bsdfWard(),
-            bsdfGgx(),     bsdfBeckmann(), bsdfGlass(),     bsdfHair()};
+    std::vector<Shadeop> list;
+    for (const Distribution& d : distributions()) list.push_back(d.formula);
+    return list;
 }
 } // namespace alpenglow::rsl
 #endif

@@ -29,12 +29,13 @@ AL_RUNTIME(al_bsdf_ashikhminshirley, opBsdfAshikhminShirley)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfAshikhminShirley() {
+inline Distribution bsdfAshikhminShirley() {
     return bsdfOp(
+        "ashikhmin-shirley",
         "color __bsdf_ashikhminshirley(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv; color eta, "
         "color k)",
         "al_bsdf_ashikhminshirley",
-        "\"ashikhmin-shirley\": n . l sqrt((eu + 1)(ev + 1)) / (8 PI) (n . h)^(eu cos^2 ph + ev sin^2 ph) F / (h . l max(n . l, "
+        "n . l sqrt((eu + 1)(ev + 1)) / (8 PI) (n . h)^(eu cos^2 ph + ev sin^2 ph) F / (h . l max(n . l, "
         "n . wo)), exponents as "
         "for blinn, ph the angle between h and udir on the surface.",
         "3Delight manual, 6.4.5.2 (exponents); Ashikhmin and Shirley 2000",

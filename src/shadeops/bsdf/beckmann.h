@@ -19,12 +19,13 @@ AL_RUNTIME(al_bsdf_beckmann, opBsdfBeckmann)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfBeckmann() {
+inline Distribution bsdfBeckmann() {
     return bsdfOp(
+        "beckmann",
         "color __bsdf_beckmann(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv; color eta, color "
         "k)",
         "al_bsdf_beckmann",
-        "\"beckmann\": as ggx, with D = exp(-tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2)) / (PI a b cos^4 th) and A(w) = "
+        "as ggx, with D = exp(-tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2)) / (PI a b cos^4 th) and A(w) = "
         "(exp(-x^2) "
         "/ (x sqrt(PI)) - erfc(x)) / 2, 1 / x^2 = tan^2 th_w (a^2 cos^2 ph_w + b^2 sin^2 ph_w). cook-torrance has the same D "
         "with "

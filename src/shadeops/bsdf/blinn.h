@@ -27,9 +27,10 @@ AL_RUNTIME(al_bsdf_blinn, opBsdfBlinn)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfBlinn() {
-    return bsdfOp("color __bsdf_blinn(vector l, vector n, vector wo; float roughness; color eta, color k)", "al_bsdf_blinn",
-                  "\"blinn\": D G F / (4 n . wo), e = roughness^-3.5 - 1, D = (e + 2) / (2 PI) (n . h)^e, G of V-shaped grooves, "
+inline Distribution bsdfBlinn() {
+    return bsdfOp("blinn", "color __bsdf_blinn(vector l, vector n, vector wo; float roughness; color eta, color k)",
+                  "al_bsdf_blinn",
+                  "D G F / (4 n . wo), e = roughness^-3.5 - 1, D = (e + 2) / (2 PI) (n . h)^e, G of V-shaped grooves, "
                   "F by eta and k (eta 0: 1).",
                   "3Delight manual, 6.4.5.2 (exponent); Blinn 1977",
                   {"__bsdf_blinn(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))",

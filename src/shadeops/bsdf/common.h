@@ -2,7 +2,8 @@
 //
 // Every distribution takes l (toward the light), n (the surface's normal) and, most of them, wo (toward the viewer), of any
 // length, and gives the reflection function times the cosine n . l, per steradian: over all l its integral is the part of the
-// light that is kept. bsdf() in a shader chooses among them by name (rsl/ir/build_bsdf.cpp).
+// light that is kept. Each file declares its name and
+// its formula (Distribution); bsdf() chooses by that name (rsl/ir/build_bsdf.cpp), the lobes of trace() use the formulas.
 #pragma once
 #include "shadeops/call.h"
 
@@ -84,11 +85,15 @@ template <class T> AL_INLINE T exponentOf(const T& roughness) { return positive(
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
+#include "shadeops/distributions.h"
 
 namespace alpenglow::rsl {
-/// The hidden shadeop behind one distribution: large, so called and not inlined.
-inline Shadeop bsdfOp(const char* signature, const char* symbol, const char* doc, const char* source, Example example) {
-    Shadeop op;
+/// A distribution and its hidden shadeop, which is large, so called and not inlined.
+inline Distribution bsdfOp(const char* name, const char* signature, const char* symbol, const char* doc, const char* source,
+                           Example example) {
+    Distribution d;
+    d.name = name;
+    Shadeop& op = d.formula;
     op.signatures = {parseSignature(signature, symbol)};
     const std::string& text = op.signatures[0].text;
     const size_t open = text.find('(');
@@ -96,10 +101,10 @@ inline Shadeop bsdfOp(const char* signature, const char* symbol, const char* doc
     op.section = "Lighting";
     op.outOfLine = true;
     op.widest = 16;
-    op.doc = std::string("A distribution of bsdf(). ") + doc;
+    op.doc = "A distribution of bsdf(). \"" + d.name + "\": " + doc;
     op.source = source;
-    op.examples = {std::move(example)};
-    return op;
+    if (!example.expression.empty()) op.examples = {std::move(example)};
+    return d;
 }
 } // namespace alpenglow::rsl
 #endif

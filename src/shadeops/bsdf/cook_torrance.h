@@ -26,10 +26,11 @@ AL_RUNTIME(al_bsdf_cooktorrance, opBsdfCookTorrance)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfCookTorrance() {
-    return bsdfOp("color __bsdf_cooktorrance(vector l, vector n, vector wo; float roughness; color eta, color k)",
+inline Distribution bsdfCookTorrance() {
+    return bsdfOp("cook-torrance",
+                  "color __bsdf_cooktorrance(vector l, vector n, vector wo; float roughness; color eta, color k)",
                   "al_bsdf_cooktorrance",
-                  "\"cook-torrance\": D G F / (4 n . wo), D = exp(-tan^2 th / m^2) / (PI m^2 cos^4 th) with m = roughness, G and "
+                  "D G F / (4 n . wo), D = exp(-tan^2 th / m^2) / (PI m^2 cos^4 th) with m = roughness, G and "
                   "F as for blinn.",
                   "3Delight manual, 6.4.5.2; Cook and Torrance 1982",
                   {"__bsdf_cooktorrance(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))",

@@ -15,11 +15,10 @@ AL_RUNTIME(al_bsdf_cosine, opBsdfCosine)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfCosine() {
-    return bsdfOp(
-        "float __bsdf_cosine(vector l, vector n; float cone)", "al_bsdf_cosine",
-        "\"cosine\": n . l / (PI sin^2 cone) within the cone of half angle cone about n (at most PI/2), else 0; 0 for cone 0.",
-        "3Delight manual, 6.4.5.2", {"__bsdf_cosine(vector(0,0,1), vector(0,0,1), 2)", "0.3183099"});
+inline Distribution bsdfCosine() {
+    return bsdfOp("cosine", "float __bsdf_cosine(vector l, vector n; float cone)", "al_bsdf_cosine",
+                  "n . l / (PI sin^2 cone) within the cone of half angle cone about n (at most PI/2), else 0; 0 for cone 0.",
+                  "3Delight manual, 6.4.5.2", {"__bsdf_cosine(vector(0,0,1), vector(0,0,1), 2)", "0.3183099"});
 }
 } // namespace alpenglow::rsl
 #endif

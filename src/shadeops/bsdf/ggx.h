@@ -19,11 +19,12 @@ AL_RUNTIME(al_bsdf_ggx, opBsdfGgx)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfGgx() {
+inline Distribution bsdfGgx() {
     return bsdfOp(
+        "ggx",
         "color __bsdf_ggx(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv; color eta, color k)",
         "al_bsdf_ggx",
-        "\"ggx\": D G F / (4 n . wo), D = 1 / (PI a b cos^4 th (1 + tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2))^2) with a = "
+        "D G F / (4 n . wo), D = 1 / (PI a b cos^4 th (1 + tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2))^2) with a = "
         "roughness along udir, b = roughnessv, G = 1 / (1 + A(l) + A(wo)), A(w) = (sqrt(1 + tan^2 th_w (a^2 cos^2 ph_w + b^2 "
         "sin^2 ph_w)) - 1) / 2, F by eta and k (eta 0: 1). For metals give \"eta\" two colours, index and extinction.",
         "Walter et al. 2007; G of heights: Heitz 2014",

@@ -11,6 +11,9 @@ template <class T> AL_INLINE T smithGgx(const T& a2, const T& c) {
     return divide(T(vf(2)), root(vf(1) + divide(a2, c * c)) + vf(1));
 }
 
+/// Index of refraction of a call that gives none.
+inline constexpr float kGlassEta = 1.5f;
+
 /// A surface of glass as the viewer sees it.
 template <class T> struct GlassSide {
     Triple<T> o, n;    ///< unit; n on the viewer's side
@@ -79,20 +82,22 @@ AL_RUNTIME(al_bsdf_glassggx, opBsdfGlassParts)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfGlass() {
-    Shadeop op =
-        bsdfOp("void __bsdf_glassggx(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv, float eta; "
+inline Distribution bsdfGlass() {
+    Distribution d =
+        bsdfOp("glass-ggx",
+               "void __bsdf_glassggx(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv, float eta; "
                "output float reflected, "
                "output float refracted)",
                "al_bsdf_glassggx",
-               "\"glass-ggx\": reflected: D G F / (4 n . wo) for light on the viewer's side; refracted: |l . h| (wo . h) nl^2 (1 "
+               "reflected: D G F / (4 n . wo) for light on the viewer's side; refracted: |l . h| (wo . h) nl^2 (1 "
                "- F) G D / (n . wo (no wo . h + nl "
                "l . h)^2) for light on the other, no and nl the indices on the two sides. D of Trowbridge and Reitz with "
                "roughness as its width, G of Smith. "
                "Refracted light is counted as energy, as Kt of fresnel() is: it has no factor for the change of solid angle.",
                "3Delight manual, 6.4.5.2; Walter et al. 2007", {"", ""});
-    op.examples.clear();
-    return op;
+    d.eta = AL_NAMESPACE::kGlassEta;
+    d.parts = 2;
+    return d;
 }
 } // namespace alpenglow::rsl
 #endif

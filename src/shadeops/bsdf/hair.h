@@ -9,6 +9,8 @@
 
 namespace alpenglow::rsl::AL_NAMESPACE {
 
+/// Index of refraction of a call that gives none.
+inline constexpr float kHairEta = 1.55f;
 /// Pieces of half the fibre's width, bounded at equal angles.
 inline constexpr int kHairPieces = 12;
 /// Sines of the angles of the bounds and the middles of the pieces, by their Taylor series.
@@ -203,21 +205,27 @@ AL_RUNTIME(al_bsdf_hair, opBsdfHair)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfHair() {
-    Shadeop op = bsdfOp("color __bsdf_hair(vector l, vector tip, vector wo, vector udir; float eta; color absorption; float "
-                        "lobe, float tilt, float longitudinal, "
-                        "float azimuthal)",
-                        "al_bsdf_hair",
-                        "\"hair\": lobe 0 (R) to 3 (TRRT) of a fibre that points along tip, for its whole width. tilt turns lobe "
-                        "p by (2 - 3 p) tilt toward the tip; "
-                        "longitudinal and azimuthal, 0..1, set its spread along and around the fibre; absorption acts along "
-                        "paths inside, 2 being the diameter. udir is "
-                        "the long axis of an elliptic section, its length the eccentricity (below 1, 0 is round). Without tilt "
-                        "the lobes are reciprocal; together "
-                        "they keep at most all light.",
-                        "3Delight manual, 6.4.5.2; Marschner et al. 2003, d'Eon et al. 2011, Chiang et al. 2016", {"", ""});
-    op.examples.clear();
-    return op;
+inline Distribution bsdfHair() {
+    Distribution d =
+        bsdfOp("hair",
+               "color __bsdf_hair(vector l, vector tip, vector wo, vector udir; float eta; color absorption; float "
+               "lobe, float tilt, float longitudinal, "
+               "float azimuthal)",
+               "al_bsdf_hair",
+               "lobe 0 (R) to 3 (TRRT) of a fibre that points along tip, for its whole width. tilt turns lobe "
+               "p by (2 - 3 p) tilt toward the tip; "
+               "longitudinal and azimuthal, 0..1, set its spread along and around the fibre; absorption acts along "
+               "paths inside, 2 being the diameter. udir is "
+               "the long axis of an elliptic section, its length the eccentricity (below 1, 0 is round). Without tilt "
+               "the lobes are reciprocal; together "
+               "they keep at most all light.",
+               "3Delight manual, 6.4.5.2; Marschner et al. 2003, d'Eon et al. 2011, Chiang et al. 2016", {"", ""});
+    d.eta = AL_NAMESPACE::kHairEta;
+    d.parts = 4; // 3Delight manual, 6.4.5.2: up to 4 lobes of 4 numbers: weight, tilt, longitudinal, azimuthal
+    d.lobe = {1, 0, 0.3f, 0.3f};
+    d.lobes = 3;
+    d.surface = false;
+    return d;
 }
 } // namespace alpenglow::rsl
 #endif

@@ -22,9 +22,9 @@ AL_RUNTIME(al_bsdf_orennayar, opBsdfOrenNayar)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfOrenNayar() {
-    return bsdfOp("float __bsdf_orennayar(vector l, vector n, vector wo; float roughness)", "al_bsdf_orennayar",
-                  "\"oren-nayar\": n . l (A + B max(0, cos(dphi)) sin(a) tan(b)) / PI, s = roughness (radians, no upper limit), "
+inline Distribution bsdfOrenNayar() {
+    return bsdfOp("oren-nayar", "float __bsdf_orennayar(vector l, vector n, vector wo; float roughness)", "al_bsdf_orennayar",
+                  "n . l (A + B max(0, cos(dphi)) sin(a) tan(b)) / PI, s = roughness (radians, no upper limit), "
                   "A = 1 - 0.5 s^2 / (s^2 + 0.33), B = 0.45 s^2 / (s^2 + 0.09), a and b the larger and the smaller angle. "
                   "Roughness 0 is n . l / PI.",
                   "3Delight manual, 6.4.5.2; Oren and Nayar 1994",

@@ -15,9 +15,9 @@ AL_RUNTIME(al_bsdf_uniform, opBsdfUniform)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfUniform() {
-    return bsdfOp("float __bsdf_uniform(vector l, vector n; float cone)", "al_bsdf_uniform",
-                  "\"uniform\": 1 / (2 PI (1 - cos cone)) within the cone of half angle cone about n, else 0; 0 for cone 0, "
+inline Distribution bsdfUniform() {
+    return bsdfOp("uniform", "float __bsdf_uniform(vector l, vector n; float cone)", "al_bsdf_uniform",
+                  "1 / (2 PI (1 - cos cone)) within the cone of half angle cone about n, else 0; 0 for cone 0, "
                   "which is one direction.",
                   "3Delight manual, 6.4.5.2", {"__bsdf_uniform(vector(0,0,1), vector(0,0,1), 1.6)", "0.1546395"});
 }

@@ -27,13 +27,13 @@ AL_RUNTIME(al_bsdf_ward, opBsdfWard)
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::rsl {
-inline Shadeop bsdfWard() {
-    return bsdfOp(
-        "float __bsdf_ward(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv)", "al_bsdf_ward",
-        "\"ward\": sqrt(n . l / n . wo) exp(-tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2)) / (4 PI a b), a = roughness along udir, "
-        "b = roughnessv.",
-        "3Delight manual, 6.4.5.2; Ward 1992",
-        {"__bsdf_ward(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 0.5, 0.5)", "0.3183099"});
+inline Distribution bsdfWard() {
+    return bsdfOp("ward", "float __bsdf_ward(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv)",
+                  "al_bsdf_ward",
+                  "sqrt(n . l / n . wo) exp(-tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2)) / (4 PI a b), a = roughness along udir, "
+                  "b = roughnessv.",
+                  "3Delight manual, 6.4.5.2; Ward 1992",
+                  {"__bsdf_ward(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 0.5, 0.5)", "0.3183099"});
 }
 } // namespace alpenglow::rsl
 #endif

@@ -223,7 +223,7 @@ async function loadScene() {
   try {
     const data = await (await fetch('scene')).json();
     page.sceneData = data;
-    $('outputs').replaceChildren(...['a', 'z', 'N', 'albedo', 'normal', 'direct', 'indirect', 'lpe:CL', 'lpe:C<RD>L', 'lpe:C<RD><RD>+L', 'lpe:C<RG>.*L', 'variance', 'samples', ...data.outputs].map((o) => new Option(o)));
+    $('outputs').replaceChildren(...['a', 'z', 'N', ...data.computed, 'direct', 'indirect', 'lpe:CL', 'lpe:C<RD>L', 'lpe:C<RD><RD>+L', 'lpe:C<RG>.*L', ...data.outputs].map((o) => new Option(o)));
     const names = data.shaders.map((s) => `${s.name} ${s.about ? 1 : 0}`).join();
     if (open && (page.shadersHave !== names || !$('shaderlist').contains(document.activeElement))) {
       page.shadersHave = names;

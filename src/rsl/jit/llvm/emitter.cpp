@@ -167,7 +167,7 @@ Val Emitter::keepLanes(Value* running, const Val& next, const Val& old) {
     return r;
 }
 
-// next without the selects that keep `old` in lanes where `leaving` is set. What such a lane holds is not looked at again.
+// next without the selects that keep `old` in lanes where `leaving` is set. The value of such a lane is not read again.
 Val Emitter::dropDead(Val next, const Val& old, Value* leaving) {
     auto isTrue = [](Value* v) {
         auto* c = llvm::dyn_cast<llvm::Constant>(v);

@@ -210,7 +210,7 @@ void Emitter::allowTurn(const Inst* loop, Value* turn, BasicBlock* inside, Basic
     b_.CreateBr(exit);
 }
 
-/// Lanes that left keep what they had, where anyone will ask for it, and whatever comes where nobody will.
+/// Lanes that left keep their values if these are read later; otherwise the values are undefined.
 void Emitter::keepLeft(const Inst* loop, Value* running, const std::vector<Val>& before, std::vector<Val>& next) {
     const ir::Region &test = loop->regions[0], &body = loop->regions[1];
     std::vector<size_t> flags; // set in lanes that leave: `while (!flag && ...)`

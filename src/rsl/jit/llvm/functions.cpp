@@ -18,7 +18,7 @@ Emitter::Emitter(const Emitter& caller, const Shapes& shapes)
       runtime_(caller.runtime_), context_(caller.context_), b_(context_), entry_(context_), f32_(caller.f32_), i1_(caller.i1_),
       i32_(caller.i32_), i64_(caller.i64_), ptr_(caller.ptr_), void_(caller.void_), vf_(caller.vf_), vi_(caller.vi_),
       vm_(caller.vm_), shared_(caller.shared_), wrapCalls_(caller.wrapCalls_) {
-    loops_ = 1; // whoever calls may be in a loop
+    loops_ = 1; // the caller may be in a loop
 }
 
 Emitter::Slot Emitter::slot(const Jet& j) const {

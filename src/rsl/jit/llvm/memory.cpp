@@ -145,7 +145,7 @@ void Emitter::arrayInput(const Inst* i) {
     define(i, 0, {Jet{a.base}});
 }
 
-// Truncated towards zero; outside the array the nearest element is meant; NaN is element 0.
+// Truncated towards zero; outside of the array the nearest element is used; NaN is element 0.
 Value* Emitter::elementIndex(Value* index, int length) {
     if (auto* c = llvm::dyn_cast<llvm::ConstantFP>(index)) {
         const double d = c->getValueAPF().convertToDouble();

@@ -5,15 +5,15 @@ namespace alpenglow::world {
 
 namespace {
 
-constexpr size_t kSplit = 160;    ///< a cell with more samples is divided
-constexpr size_t kEnough = 40;    ///< a cell with fewer samples uses the bins of its parent
-constexpr double kOfParent = 80;  ///< the bins of a cell's parent count as so many samples
-constexpr double kMostOfMean = 8; ///< a sample of more than so many times the mean weight of its cell has that weight
+constexpr size_t kSplitSeen = 160; ///< a cell with more samples is divided
+constexpr size_t kEnoughSeen = 40; ///< a cell with fewer samples uses the bins of its parent
+constexpr double kOfParent = 80;   ///< the bins of a cell's parent count as so many samples
+constexpr double kMostOfMean = 8;  ///< a sample of more than so many times the mean weight of its cell has that weight
 /// The share is the one with the least second moment, if that is so much less than without: the guide does not know of light that
 /// none of its samples found, and a look-up takes time.
 constexpr float kShares[] = {.5f, .75f, .9f};
 constexpr size_t kMany = 2000; ///< with fewer samples cells are large, and the guide may be far off for some of their points
-constexpr double kMost = .8;
+constexpr double kMostMoment = .8;
 constexpr double kMostAlone = .6;  ///< likewise where each light sample is a ray more, which alone would halve it
 constexpr double kMostFound = .25; ///< and where more rays of lobes than this find the light, they do so well enough
 constexpr double kLobe = .5 / kPi; ///< mean density of a diffuse lobe, whose rays see the light as well (balance heuristic)
@@ -75,9 +75,9 @@ float LightGuide::shareOf(std::span<const SeenLight> seen, Ids ids, Ids around) 
             mixed[k] += square / (double((1 - kShares[k]) * s.pdf + kShares[k] * guide) + kLobe);
     }
     if (alone_) return mixed[0] < kMostAlone * own ? 1 : 0;
-    if (seen.size() < kMany) return mixed[0] < kMost * own ? kShares[0] : 0;
+    if (seen.size() < kMany) return mixed[0] < kMostMoment * own ? kShares[0] : 0;
     const size_t best = size_t(std::min_element(mixed, std::end(mixed)) - mixed);
-    return mixed[best] < kMost * own ? kShares[best] : 0;
+    return mixed[best] < kMostMoment * own ? kShares[best] : 0;
 }
 
 int32_t LightGuide::add(std::span<const SeenLight> seen, Ids ids, Ids around) {
@@ -90,8 +90,8 @@ int32_t LightGuide::add(std::span<const SeenLight> seen, Ids ids, Ids around) {
 LightGuide::LightGuide(const LightDomain& domain, std::span<const SeenLight> seen, bool alone) : alone_(alone), domain_(domain) {
     std::vector<SurfaceTree::Point> points;
     for (const SeenLight& s : seen) points.push_back({s.P, kSide});
-    tree_.build(points, kSplit, kEnough, [&](const SurfaceTree::Leaf& l) {
-        if (l.points.size() >= kEnough || l.around.empty()) return add(seen, l.points, l.around);
+    tree_.build(points, kSplitSeen, kEnoughSeen, [&](const SurfaceTree::Leaf& l) {
+        if (l.points.size() >= kEnoughSeen || l.around.empty()) return add(seen, l.points, l.around);
         if (l.ofAround < 0) l.ofAround = add(seen, l.around, {});
         return l.ofAround;
     });

@@ -86,8 +86,7 @@ void BlockVertices::placeOnEmitter(size_t k, const BoundLight& light, const Ligh
     const VertexBlock& v = vertices_[b];
     Lanes of[limits::kLightsSampled] = {};
     alignas(64) double share[kBlock];
-    Guiding guiding;
-    if (guide) guiding.begin(*guide, v, lit_[b], pairs_[b]);
+    const GuidedLanes guided(guide, v, lit_[b], pairs_[b].x);
     for (size_t i = 0; i < size_t(kBlock); ++i) {
         const float choose = shapes.size() > 1 ? choices_[b].x[i] : 0;
         of[emitter.flatFrom({v.P[0][i], v.P[1][i], v.P[2][i]}, choose, share[i])] |= 1u << i;
@@ -113,31 +112,21 @@ void BlockVertices::placeOnEmitter(size_t k, const BoundLight& light, const Ligh
         if (emitter.flatVisibility(s) & visibilityBit(RayType::Diffuse)) placed.metDiffuse |= there;
         if (emitter.flatVisibility(s) & visibilityBit(RayType::Specular)) placed.metSpecular |= there;
     }
-    if (guiding.guided) followGuide(k, light, *guide, guiding);
-}
-
-void BlockVertices::Guiding::begin(const LightGuide& guide, const VertexBlock& v, Lanes of, render::NumberBlock& numbers) {
-    for (; of; of &= of - 1) {
-        const int i = std::countr_zero(of);
-        const GuidedDraw by(&guide, {v.P[0][i], v.P[1][i], v.P[2][i]}, numbers.x[i]);
-        cell[i] = by.cell;
-        toward |= Lanes(by.toward) << i;
-        guided |= Lanes(by.cell != nullptr) << i;
-    }
+    if (guided.guided) followGuide(k, light, *guide, guided);
 }
 
 /// Places samples where the guide's directions lead, and gives all points that have a guide the density of the mixture.
-void BlockVertices::followGuide(size_t k, const BoundLight& light, const LightGuide& guide, const Guiding& guiding) {
+void BlockVertices::followGuide(size_t k, const BoundLight& light, const LightGuide& guide, const GuidedLanes& guided) {
     const size_t b = litBlocks_[k], n = litBlocks_.size() * kBlock;
     float *P = lamp_.data() + k * kBlock, *N = P + 3 * n;
     LightBlock& l = lights_[b];
     const VertexBlock& v = vertices_[b];
     BlockPlaced& placed = placed_[k];
-    for (Lanes left = guiding.guided; left; left &= left - 1) {
+    for (Lanes left = guided.guided; left; left &= left - 1) {
         const size_t i = size_t(std::countr_zero(left));
         const Vec3 from(v.P[0][i], v.P[1][i], v.P[2][i]);
-        const LightGuide::Cell& cell = *guiding.cell[i];
-        if (guiding.toward >> i & 1) {
+        const LightGuide::Cell& cell = *guided.cell[i];
+        if (guided.toward >> i & 1) {
             const Vec3 w = guide.draw(cell, from, {pairs_[b].x[i], pairs_[b].y[i]});
             Emitter::Sample s;
             geometry::SurfacePoint point;

@@ -8,7 +8,6 @@
 #include "integrator/raywords.h"
 #include "integrator/stageset.h"
 #include "lanes/stages.h"
-#include "world/lightguide.h"
 
 namespace alpenglow::integrator {
 
@@ -69,8 +68,7 @@ private:
     void connect(const BoundLight&, BatchContext&);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     Lanes contribute(const Site&, const VertexBlock&, const LobeBlock&, const LightBlock&, BatchContext&, const size_t* points);
-    void sendShadow(const Site&, size_t point, size_t lane, const Vec3& w, const BoundLight&, const LightValue* says,
-                    BatchContext&);
+    void sendShadow(const Site&, size_t point, size_t lane, const Vec3& w, const BoundLight&, const LightValue*, BatchContext&);
     int32_t shareOf(const PathRay&) const;
     /// PathRay::path of light that a lobe of a call site scatters toward w.
     uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
@@ -80,13 +78,7 @@ private:
     void askInRows(const BoundLight&, const BatchContext&);
     void placeInRows(const BoundLight&, const LightGuide*);
     void placeOnEmitter(size_t k, const BoundLight&, const LightGuide*);
-    /// The light samples of a block that have a guide.
-    struct Guiding {
-        Lanes guided = 0, toward = 0; ///< toward: in a direction of the guide
-        const LightGuide::Cell* cell[kBlock];
-        void begin(const LightGuide&, const VertexBlock&, Lanes, render::NumberBlock&);
-    };
-    void followGuide(size_t k, const BoundLight&, const LightGuide&, const Guiding&);
+    void followGuide(size_t k, const BoundLight&, const LightGuide&, const struct GuidedLanes&);
     void takeRows(const BoundLight&, const shading::Batch&, const BatchContext&);
     void takeLightOf(size_t k, const BoundLight&, const shading::Batch&, const BatchContext&);
     void placeFar(const BoundLight&, const shading::Batch&, size_t at, LightBlock&) const;

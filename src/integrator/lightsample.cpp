@@ -1,6 +1,7 @@
 #include "integrator/lightsample.h"
 #include "services/lightloop.h"
 #include "world/skytable.h"
+#include <bit>
 
 namespace alpenglow::integrator {
 
@@ -34,6 +35,16 @@ GuidedDraw::GuidedDraw(const LightGuide* guide, const Vec3& from, float& x) {
     if (!cell) return;
     toward = x < cell->share;
     x = std::min(toward ? x / cell->share : (x - cell->share) / (1 - cell->share), 1 - 0x1p-24f);
+}
+
+GuidedLanes::GuidedLanes(const LightGuide* guide, const VertexBlock& v, Lanes points, float* x) {
+    for (Lanes left = guide ? points : 0; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const GuidedDraw by(guide, {v.P[0][i], v.P[1][i], v.P[2][i]}, x[i]);
+        cell[i] = by.cell;
+        toward |= Lanes(by.toward) << i;
+        guided |= Lanes(by.cell != nullptr) << i;
+    }
 }
 
 bool placeLightSample(const WorldImpl& world, const BoundLight& light, const LightGuide* guide, const LightNumbers& numbers,

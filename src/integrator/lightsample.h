@@ -1,6 +1,7 @@
 // A light sample for a shaded point: its position on the light, and the point at which the light's kernel runs.
 #pragma once
 #include "integrator/rays.h"
+#include "lanes/blocks.h"
 #include "world/lightguide.h"
 
 namespace alpenglow::integrator {
@@ -26,6 +27,13 @@ struct GuidedDraw {
     bool toward = false;                    ///< in a direction of the guide
     /// x: number in [0, 1) that decides, then uniform in [0, 1) again.
     GuidedDraw(const LightGuide*, const Vec3& from, float& x);
+};
+/// The same for a block of points.
+struct GuidedLanes {
+    Lanes guided = 0, toward = 0; ///< points with a cell; with a direction of the guide
+    const LightGuide::Cell* cell[kBlock];
+    /// x of the points' numbers as in GuidedDraw.
+    GuidedLanes(const LightGuide*, const VertexBlock&, Lanes points, float* x);
 };
 /// Samples the point on the light for a query filled by tellLit(). guide: null: by the light's own density. Returns false if the
 /// sample carries no light.

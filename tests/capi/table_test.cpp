@@ -162,7 +162,7 @@ const std::map<std::string_view, Sample> kSamples = {
     ONE(Displace, ("PxrDisplace", "d"), "float dispAmount", kTenth),
     ONE(Pattern, ("PxrChecker", "t"), "color colorA", kRed),
     ONE(Light, ("PxrRectLight", "l"), "float intensity", kTwo),
-    NONE(LightFilter, ("PxrBarn", "f")),
+    ONE(LightFilter, ("PxrRodLightFilter", "f"), "float edge", kTenth),
     PLAIN(EnableLightFilter, "l", "f", RI_TRUE),
     ONE(Integrator, ("PxrPathTracer", "i"), "int maxPathLength", k6),
     NONE(DisplayFilter, ("PxrGrade", "g")),

@@ -63,15 +63,16 @@ bool learnLights(const std::shared_ptr<const World>& world, std::span<const Came
     LightGuides guides(by.size());
     for (size_t i = 0; i < by.size(); ++i) {
         if (by[i].size() < kFewest) continue;
-        auto guide = std::make_shared<const LightGuide>(domainOf(of->lights_[i]), by[i]);
-        if (of->lights_[i].guidable) guide = std::make_shared<const LightGuide>(domainOf(of->lights_[i]), by[i], blocked);
+        const BoundLight& l = of->lights_[i];
+        const auto guide = l.guidable ? std::make_shared<const LightGuide>(domainOf(l), by[i], blocked)
+                                      : std::make_shared<const LightGuide>(domainOf(l), by[i]);
         f.samples += by[i].size();
         f.cells += guide->cells();
         const auto follows = std::count_if(by[i].begin(), by[i].end(), [&](const SeenLight& s) { return guide->find(s.P); });
         if (!(double(follows) > kLeastFollowing * double(by[i].size()))) continue;
         ++f.lights;
         f.used += guide->used();
-        guides[i] = std::move(guide);
+        guides[i] = guide;
     }
     if (f.lights == 0) guides.clear();
     of->photons_->lightGuides = std::move(guides);

@@ -158,7 +158,7 @@ void LightSampling::run(Sched& sched) {
 
 /// Samples skies that only their guide samples, at all points of chosenAt_.
 void LightSampling::guidedSkies(const WorldImpl::LightList& list, Sched& sched) {
-    if (!rules_.pickOne || c_->between || c_->below) return;
+    if (!rules_.pickOne || c_->between) return;
     for (const int number : world_.skies_) {
         const BoundLight& light = world_.lights_[size_t(number)];
         if (light.guidable && guideOf(world_, light) && list.lights.contains(number))

@@ -199,6 +199,20 @@ TEST(LightGuide, FloorUnderASky) {
     }
 }
 
+// Exits of subsurface walks gather light as other points do, so a guide must not take light from their rays.
+TEST(LightGuide, LightThatLeavesBelow) {
+    Scene s(inWorld(kSky + "Surface \"standard\" \"subsurface\" 1 \"float specular\" 0 \"color subsurface_radius\" [.2 .2 .2]\n" +
+                    kFloor),
+            path());
+    const int n = samples(20000);
+    const Moments plain = s.estimate(kView, n);
+    guideWrongly(s);
+    const Moments wrong = s.estimate(kView, n);
+    const double se = std::hypot(plain.se(), wrong.se());
+    EXPECT_NEAR(plain.mean(), wrong.mean(), kZ * se);
+    EXPECT_LT(se, .01 * plain.mean());
+}
+
 TEST(LightGuide, BlocksHaveTheBitsOfSinglePoints) {
     for (const std::string& light : {kSky, kLamp, sideSky()}) {
         std::vector<std::vector<SampleResult>> all;

@@ -198,8 +198,9 @@ constexpr OptionDescription kHiderParameters[] = {
     {"focalDist", "float", "that of DepthOfField", "5", Used,
      "raytrace: distance along the axis that a lens by lensDiameter has in focus."},
     {"guide", "int", "1", "0", Used,
-     "path: 1: where light reaches surfaces by way of mirrors and clear glass, rays are sent toward them, which photons have "
-     "found before the first sample: less noise, and no bias; 0: paths find such light by chance alone."},
+     "path: 1: before the first sample, photons find where light reaches surfaces by way of mirrors and clear glass, "
+     "and paths find which parts of flat lamps and skies are visible from where; rays and light samples follow that: "
+     "less noise, and no bias. 0: neither."},
     {"incremental", "", "", "", Ignored, "PRMan; --checkpoint, --spp and --noise say how a picture grows"},
     {"integrationmode", "", "", "", Ignored, "PRMan; the hider path is the way here"},
     {"jitter", "int", "1", "0", Used,

@@ -43,7 +43,7 @@ void BlockVertices::Guided::run(BatchContext& c, Sched& sched) {
     for (size_t block = 0; block < b_.blocks_; ++block) {
         const VertexBlock& v = b_.vertices_[block];
         Lanes drawn = 0;
-        for (Lanes left = v.points & ~v.guided & ~v.last; left; left &= left - 1) {
+        for (Lanes left = v.points & ~v.guided & ~(v.deep[0] & v.deep[1]); left; left &= left - 1) {
             const int i = std::countr_zero(left);
             const size_t at = block * kBlock + size_t(i);
             Point& p = points_[at] = pointOf(block, i, c);
@@ -83,7 +83,7 @@ void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext&
                      c.targets[at],
                      P,
                      {l.weight[0][i], l.weight[1][i], l.weight[2][i]},
-                     s.lighting ? v.energyScale[i] : 1,
+                     (s.lighting ? v.energyScale[i] : 1) * b_.indirectOf(at),
                      l.chosen[i],
                      l.lobe[kRowSpread][i],
                      s.rays,

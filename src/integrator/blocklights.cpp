@@ -44,10 +44,17 @@ void BlockVertices::findLit(const BoundLight* light) {
     lit_.assign(blocks_, 0);
     for (size_t k = 0; k < count_; ++k)
         for (size_t b = 0; b < blocks_ && (light ? samples(sites_[k], *light) : sites_[k].lights); ++b)
-            lit_[b] |= sites_[k].lobes[b].lights;
+            lit_[b] |= light ? litBy(sites_[k].lobes[b], *light) : sites_[k].lobes[b].lights;
     litBlocks_.clear();
     for (size_t b = 0; b < blocks_; ++b)
         if (lit_[b]) litBlocks_.push_back(b);
+}
+
+/// Points whose lobe samples a light. The light guide completes rays, so its skies need lobes that send some.
+Lanes BlockVertices::litBy(const LobeBlock& l, const BoundLight& light) {
+    Lanes some = l.lights;
+    for (int i = 0; light.guidable && i < kBlock; ++i) some &= ~(Lanes(!(l.chosen[i] > 0)) << i);
+    return some;
 }
 
 /// Samples one light for the points of lit_ and litBlocks_.
@@ -198,10 +205,11 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
     l.parted = c.between; // takeParts()
     stages_.aim(vertices_[b], l, shadow_);
     std::fill_n(sent_, kBlock, -1);
+    const Lanes placed = l.asked;
     for (size_t k = 0; k < count_; ++k) {
         const Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
-        const Lanes asked = lobe.lights & l.asked;
+        const Lanes asked = l.asked = litBy(lobe, of) & placed;
         if (!asked || !samples(s, of)) continue;
         s.lanes->evaluate(lobe.lobe[0], asked, l.w[0], value_[0]);
         for (Lanes some = contribute(s, vertices_[b], lobe, l, c, points); some; some &= some - 1) {

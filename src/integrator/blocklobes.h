@@ -20,10 +20,24 @@ struct BlockLobes {
     bool lighting = false; ///< a lighting shadeop
     bool lights = false;   ///< its lobe samples lights
     bool diffuse = false;  ///< its rays are diffuse
+    bool walks = false;    ///< subsurface(): its rays walk below the surface
+    uint32_t nth = 0;      ///< how many calls of a strip at this call site came before, in a loop
     std::vector<LobeBlock> lobes;
     std::vector<LightDirected> beside; ///< by point: light-directed sampling (lightdirected.h); empty: none
     std::vector<float> narrow;         ///< arguments, by block, for kernels whose strips are narrower than a block
+    std::vector<const float*> rows;    ///< by block: weight and arguments of its first point, `stride` floats apart
+    int stride = 0;
+    /// By point, for further calls of a call site: how many of the earlier ones had a weight.
+    std::vector<uint32_t> occurrence;
+    uint32_t occurrenceAt(size_t point) const { return occurrence.empty() ? 0 : occurrence[point]; }
 
+    /// Forgets the calls of the previous batch.
+    void clearCalls() {
+        walks = false;
+        nth = 0;
+        narrow.clear();
+        occurrence.clear();
+    }
     /// Points of a block whose lobe may be followed and is not a delta.
     Lanes spreads(size_t block) const;
     /// LightDirected::weigh() for the points of a block. value: space for kValueRows rows.

@@ -18,7 +18,7 @@ bool BlockVertices::needsPoints(const SurfaceBinding& b) const {
 
 bool BlockVertices::run(BatchContext& c, const Homogeneous& h, std::span<const Vec3> beside, Sched& sched) {
     const SurfaceBinding& b = *c.binding;
-    const bool plain = usable_ && plain_[size_t(b.lightList)] && !b.matte && b.maxDiffuse < 0 && b.maxSpecular < 0;
+    const bool plain = usable_ && plain_[size_t(b.lightList)] && !b.matte;
     if (!plain || photons_.photonTrace() || !takesRays(c)) return false;
     begin(c, false);
     loadVertices(c);
@@ -63,6 +63,7 @@ void BlockVertices::loadFlown(size_t b, const BatchContext& c) {
     v.through = false;
     for (size_t k = 0; k < size_t(kBlock); ++k) {
         const float t = c.flown[first + std::min(k, n - 1)].t;
+        endRays(b, int(k), *c.binding, true);
         for (int q = 0; q < 3; ++q) v.P[q][k] = rays.origin[q][k] + rays.direction[q][k] * t;
     }
     for (int q = 0; q < 3; ++q) { // no sides and no viewing direction
@@ -87,7 +88,7 @@ void BlockVertices::beginMedium(std::span<const Vec3> beside, float anisotropy) 
         s.lanes = &lanes_.lobes[s.kind->index];
         s.rays = &kDiffuseKind;
         s.lighting = s.lights = s.diffuse = true;
-        s.narrow.clear();
+        s.clearCalls();
         s.lobes.resize(std::max(s.lobes.size(), blocks_));
         for (size_t b = 0; b < blocks_; ++b) {
             LobeBlock& l = s.lobes[b];

@@ -6,6 +6,7 @@
 #include "integrator/mediastacks.h"
 #include "integrator/raystore.h"
 #include "integrator/vertexlight.h"
+#include "services/random.h"
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -34,18 +35,29 @@ static Lanes pickedOf(const ScatterBlock& s, int site) {
     return picked;
 }
 
-/// Samples the directions of the picked lobes and evaluates the lobes there.
-void BlockVertices::drawDirections(size_t b) {
+/// Sets the keys of the points; the stream is still to be set.
+void BlockVertices::beginNumbers(size_t b, render::NumberBlock& n) const {
     const VertexBlock& v = vertices_[b];
-    size_t points[kBlock];
-    std::iota(points, points + kBlock, b * kBlock);
-    render::NumberBlock& n = pairs_[0];
     std::copy_n(v.low, kBlock, n.low);
     std::copy_n(v.high, kBlock, n.high);
     std::copy_n(v.index, kBlock, n.index);
     std::copy_n(v.vertex, kBlock, n.vertex);
-    for (int i = 0; i < kBlock; ++i) n.stream[i] = next_.site[i] < 0 ? 0 : uint32_t(sites_[size_t(next_.site[i])].number) << 1;
     std::fill_n(n.occurrence, kBlock, 0u);
+}
+
+/// Samples the directions of the picked lobes and evaluates the lobes there.
+void BlockVertices::drawDirections(size_t b) {
+    size_t points[kBlock];
+    std::iota(points, points + kBlock, b * kBlock);
+    render::NumberBlock& n = pairs_[0];
+    beginNumbers(b, n);
+    for (int i = 0; i < kBlock; ++i) {
+        n.stream[i] = 0;
+        if (next_.site[i] < 0) continue;
+        const Site& s = sites_[size_t(next_.site[i])];
+        n.stream[i] = uint32_t(s.number) << 1;
+        n.occurrence[i] = s.occurrenceAt(b * kBlock + size_t(i)) * 4096;
+    }
     render::drawBlocks(std::span(pairs_).first(1));
     for (size_t k = 0; k < count_; ++k) {
         const Lanes picked = pickedOf(next_, int(k));
@@ -71,6 +83,12 @@ void BlockVertices::throwDice(size_t b) {
     uint32_t keys[kMostSites];
     for (size_t k = 0; k < count_; ++k) keys[k] = uint32_t(sites_[k].number);
     stages_.name(v, keys, next_);
+    for (int i = 0; i < kBlock && !loops_.empty(); ++i) { // further calls in loops
+        if (next_.site[i] < 0) continue;
+        const Site& s = sites_[size_t(next_.site[i])];
+        if (const uint32_t before = s.occurrenceAt(b * kBlock + size_t(i)))
+            next_.vertex[i] = childVertex(v.vertex[i], uint32_t(s.number), before * 4096);
+    }
     if (roulette_ == Roulette::None || (!waits_ && std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; }))) {
         std::fill_n(next_.dice, kBlock, 0.f);
         return;
@@ -78,6 +96,7 @@ void BlockVertices::throwDice(size_t b) {
     render::NumberBlock& n = pairs_[0];
     std::copy_n(next_.vertex, kBlock, n.vertex);
     std::fill_n(n.stream, kBlock, kRoulette << 1 | render::SampleNumbers::kSingle);
+    std::fill_n(n.occurrence, kBlock, 0u);
     render::drawBlocks(std::span(pairs_).first(1));
     std::copy_n(n.x, kBlock, next_.dice);
 }
@@ -89,6 +108,7 @@ void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
         accumulator_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
     }
     if (waits_ && rules_.roulette) endByChance(b);
+    walkBelow(b, c);
     if (!next_.goes) return;
     turnRays(b, c);
     keepLobes(b, c);
@@ -157,7 +177,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         }
         r.extra[i] = -1;
         const int32_t share = shareOf(c.rays[b * kBlock + size_t(i)]);
-        const float indirect = next_.indirect[i] == 0 ? 1 : v.energyScale[i];
+        const float indirect = (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(b * kBlock + size_t(i));
         if (indirect == 1 && share < 0 && !c.between) continue;
         RayExtra extra;
         if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];

@@ -6,8 +6,10 @@
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
+#include "integrator/subsurfacewalks.h"
 #include "integrator/surfacepoints.h"
 #include "integrator/vertexlight.h"
+#include "world/blocksite.h"
 #include "world/emitterfootprint.h"
 #include <algorithm>
 #include <bit>
@@ -22,14 +24,13 @@ bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels &&
 } // namespace
 
 BlockVertices::BlockVertices(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lightKernels_(s.lightKernels),
-      paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons), store_(s.store), shadows_(s.shadows),
-      surfaces_(s.surfaces), vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+    : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lastSkies_(s.lastSkies),
+      lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons),
+      store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces), vertexLight_(s.vertexLight), stages_(stages()),
+      lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
-    lastSkies_ = std::any_of(world_.skies_.begin(), world_.skies_.end(),
-                             [&](int l) { return world_.lights_[size_t(l)].kind != LightKind::Ambient; });
     const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
     usable_ = set.blocks && rules && lights && !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
@@ -50,13 +51,29 @@ BlockVertices::~BlockVertices() = default;
 bool BlockVertices::takesRays(const BatchContext& c) const {
     const bool firstSeen = world_.settings_.firstSeen;
     return std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
-        return r.quiet || (firstSeen && r.counts) || (lastSkies_ && r.bounces - r.scattered - c.between >= world_.maxDepth_) ||
-               r.scattered >= limits::kPathDepth || (world_.photons_ && world_.photons_->pass(r.sample->sample));
+        return r.quiet || (firstSeen && r.counts) || r.scattered >= limits::kPathDepth ||
+               (world_.photons_ && world_.photons_->pass(r.sample->sample));
     });
 }
 
 bool BlockVertices::takes(const BatchContext& c) const {
-    return takes(*c.binding, *c.bound) && !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
+    if (!usable_ || !plain_[size_t(c.binding->lightList)] || !asksBlocks(c)) return false;
+    return !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
+}
+
+/// Whether blocks can process all lobes that the kernel has requested at the points of the batch, with a weight that is not 0.
+bool BlockVertices::asksBlocks(const BatchContext& c) {
+    const BoundKernel& kernel = *c.bound;
+    if (kernel.blocks || !kernel.path || kernel.kernel->facts().suspends) return kernel.blocks;
+    return std::all_of(c.emits.begin(), c.emits.end(), [&](const EmitRecord& e) {
+        const SiteInfo& s = kernel.sites[size_t(e.site)];
+        if (s.block || !asksLobes(s.kind)) return true;
+        const float* weight = c.arena.data() + e.offset;
+        for (uint64_t left = e.mask; left; left &= left - 1)
+            for (int q = 0, lane = std::countr_zero(left); q < 3; ++q)
+                if (weight[q * e.lanes + lane] != 0) return false;
+        return true;
+    });
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
@@ -72,6 +89,8 @@ bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
 
 void BlockVertices::begin(const BatchContext& c, bool waits) {
     waits_ = waits;
+    indirect_ = {};
+    loops_.clear();
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
     vertices_.resize(std::max(vertices_.size(), blocks_));
@@ -84,8 +103,10 @@ bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
     lightDirections(c);
     light(c);
+    if (lastSkies_.any()) lastSkies(c);
     guided_->run(c, sched);
     scatter(c, sched);
+    if (!subsurface_.below.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
     return true;
 }
 
@@ -114,6 +135,7 @@ void BlockVertices::takeRays(const RayBlock& rays, bool between) {
         v.last |= Lanes(v.bounces[k] - int16_t(rays.path[k] >> 16) - between >= world_.maxDepth_)
                   << k; // scattering in media does not count
     }
+    v.deep[0] = v.deep[1] = v.last;
     for (int k = 0; k < kBlock; ++k) {
         const auto* sample = reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][k]) << 32 | rays.sample[0][k]);
         v.low[k] = sample->numbers.low();
@@ -126,6 +148,19 @@ void BlockVertices::takeRays(const RayBlock& rays, bool between) {
     std::copy_n(rays.vertex, kBlock, v.lightVertex);
 }
 
+/// Applies the depth limits of a surface to the lobes of a point.
+void BlockVertices::endRays(size_t b, int lane, const SurfaceBinding& s, bool between) {
+    if (s.maxDiffuse < 0 && s.maxSpecular < 0) return;
+    const RayBlock& r = rays_[b];
+    const int scattered = int16_t(r.path[lane] >> 16) + between;
+    const int diffuse = int16_t(r.bounces[lane] >> 16) - scattered, specular = int16_t(r.specular[lane]);
+    for (const int isDiffuse : {0, 1}) {
+        const bool deep = (s.maxDiffuse >= 0 && diffuse + isDiffuse > s.maxDiffuse) ||
+                          (s.maxSpecular >= 0 && specular + !isDiffuse > s.maxSpecular);
+        vertices_[b].deep[isDiffuse] |= Lanes(deep) << lane;
+    }
+}
+
 bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
     VertexBlock& v = vertices_[b];
     const size_t first = b * kBlock, n = std::min(points_ - first, size_t(kBlock));
@@ -136,7 +171,8 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
         const size_t i = first + std::min(k, n - 1); // repeats the last point
         const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
         const geometry::SurfacePoint& p = rows ? c.surfaces[i] : c.points[i].surface;
-        if (s.matte || s.maxDiffuse >= 0 || s.maxSpecular >= 0 || !(rows || c.points[i].P == p.P)) return false;
+        if (s.matte || !(rows || c.points[i].P == p.P)) return false;
+        endRays(b, int(k), s, false);
         for (int q = 0; q < 3; ++q) {
             v.P[q][k] = p.P[q];
             v.n[q][k] = p.n[q];
@@ -149,17 +185,37 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
     return true;
 }
 
-/// Finds the requesting call sites in the order of the calls. Returns false if a site requests twice at a point, i.e. in a loop.
+/// Counts the calls of a strip at each call site: in a loop one follows another.
+class BlockVertices::CallCount {
+public:
+    explicit CallCount(const BatchContext& c) : of_(c.bound->sites.size()) {}
+    /// Whether a call is the first one of its strip.
+    bool begins(const EmitRecord& e) {
+        if (e.first == first_) return false;
+        first_ = e.first;
+        std::fill(of_.begin(), of_.end(), 0u);
+        return true;
+    }
+    /// How many calls of the strip at this call site came before.
+    uint32_t next(const EmitRecord& e) { return of_[size_t(e.site)]++; }
+
+private:
+    std::vector<uint32_t> of_;
+    int first_ = -1;
+};
+
+/// Finds the requesting call sites in the order of the calls; a call site in a loop once for each turn. Returns false if points
+/// differ in that order, or there are too many.
 bool BlockVertices::findSites(const BatchContext& c) {
     count_ = 0;
-    int first = -1;
+    CallCount calls(c);
     size_t next = 0; // index after the position of the previous call
     for (const EmitRecord& e : c.emits) {
         if (!c.bound->sites[size_t(e.site)].block) continue;
-        if (e.first != first) next = 0;
-        first = e.first;
+        if (calls.begins(e)) next = 0;
+        const uint32_t nth = calls.next(e);
         size_t at = 0;
-        while (at < count_ && sites_[at].number != e.site) ++at;
+        while (at < count_ && !(sites_[at].number == e.site && sites_[at].nth == nth)) ++at;
         if (at < count_) {
             if (at < next) return false;
             next = at + 1;
@@ -168,7 +224,8 @@ bool BlockVertices::findSites(const BatchContext& c) {
         if (count_ == kMostSites) return false;
         if (count_ == sites_.size()) sites_.emplace_back();
         std::rotate(sites_.begin() + long(next), sites_.begin() + long(count_), sites_.begin() + long(count_) + 1);
-        beginSite(sites_[next++], e.site, c);
+        beginSite(sites_[next], e.site, c);
+        sites_[next++].nth = nth;
         ++count_;
     }
     return true;
@@ -180,19 +237,28 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.kind = s.info->lobe;
     s.lanes = &lanes_.lobes[s.kind->index];
     s.lighting = s.info->kind != SiteKind::Trace;
-    s.lights = s.lighting || s.info->rowLights >= 0;
+    s.lights = (s.lighting && s.info->kind != SiteKind::Subsurface) || s.info->rowLights >= 0;
     if (s.lighting) s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind : &kSpecularKind;
     else s.rays = store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, false});
     s.diffuse = s.rays->type == RayType::Diffuse;
     s.lobes.resize(std::max(s.lobes.size(), blocks_));
     for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = s.lobes[b].lights = 0;
-    s.narrow.clear();
+    s.clearCalls();
+    s.walks = s.info->kind == SiteKind::Subsurface;
+    s.rows.assign(s.walks ? blocks_ : 0, nullptr);
 }
 
 bool BlockVertices::request(const BatchContext& c) {
+    CallCount calls(c);
+    for (size_t k = 0; k < count_; ++k)
+        if (sites_[k].nth > 0) loops_.try_emplace(sites_[k].number, points_, 0u);
     for (const EmitRecord& e : c.emits) {
         if (!c.bound->sites[size_t(e.site)].block) continue;
-        const auto site = std::find_if(sites_.begin(), sites_.end(), [&](const Site& s) { return s.number == e.site; });
+        calls.begins(e);
+        const uint32_t nth = calls.next(e);
+        const auto site =
+            std::find_if(sites_.begin(), sites_.end(), [&](const Site& s) { return s.number == e.site && s.nth == nth; });
+        if (const auto loop = loops_.find(e.site); loop != loops_.end()) countCalls(*site, e, c, loop->second);
         if (!requestOf(*site, e, c)) return false;
     }
     for (size_t k = 0; k < count_; ++k) { // strips narrower than a block: their rows are now contiguous
@@ -200,11 +266,24 @@ bool BlockVertices::request(const BatchContext& c) {
         for (size_t b = 0; b < blocks_ && !s.narrow.empty(); ++b) {
             const Lanes asked = std::exchange(s.lobes[b].asked, 0) & vertices_[b].points;
             const size_t rows = s.narrow.size() / (blocks_ * kBlock);
+            if (s.walks) s.rows[b] = s.narrow.data() + (b * rows + 3) * kBlock, s.stride = kBlock;
             if (stages_.request(vertices_[b], *s.info->block, s.narrow.data() + b * rows * kBlock, kBlock, asked, s.lobes[b]))
                 return false;
         }
     }
     return true;
+}
+
+/// Counts the calls with a weight in a loop. before: by point, those of earlier turns.
+void BlockVertices::countCalls(Site& s, const EmitRecord& e, const BatchContext& c, std::vector<uint32_t>& before) {
+    s.occurrence.resize(points_);
+    const float* weight = c.arena.data() + e.offset;
+    for (uint64_t left = e.mask; left; left &= left - 1) {
+        const size_t lane = size_t(std::countr_zero(left)), point = size_t(e.first) + lane, lanes = size_t(e.lanes);
+        if (point >= points_) return;
+        s.occurrence[point] = before[point];
+        before[point] += weight[lane] != 0 || weight[lanes + lane] != 0 || weight[2 * lanes + lane] != 0;
+    }
 }
 
 /// Reads the request of a call site at the points of a strip.
@@ -214,6 +293,7 @@ bool BlockVertices::requestOf(Site& s, const EmitRecord& e, const BatchContext& 
         for (int at = 0; at < e.lanes && size_t(e.first + at) < points_; at += kBlock) {
             const size_t b = size_t(e.first + at) / kBlock;
             const Lanes asked = Lanes(e.mask >> at) & vertices_[b].points;
+            if (s.walks) s.rows[b] = rows + 3 * e.lanes + at, s.stride = e.lanes;
             if (asked && stages_.request(vertices_[b], *s.info->block, rows + at, e.lanes, asked, s.lobes[b])) return false;
         }
         return true;
@@ -249,8 +329,12 @@ std::span<LobeBlock*> BlockVertices::lobesOf(size_t b) {
 }
 
 bool BlockVertices::select(const BatchContext& c) {
-    SelectRules rules{0, world_.settings_.unbiased};
-    for (size_t k = 0; k < count_; ++k) rules.lighting |= uint32_t(sites_[k].lighting) << k;
+    SelectRules rules{0, world_.settings_.unbiased, 0, 0};
+    for (size_t k = 0; k < count_; ++k) {
+        rules.lighting |= uint32_t(sites_[k].lighting) << k;
+        rules.diffuse |= uint32_t(sites_[k].diffuse) << k;
+        rules.endless |= uint32_t(sites_[k].walks) << k;
+    }
     std::vector<Selected> found(blocks_);
     for (size_t b = 0; b < blocks_; ++b) {
         found[b] = stages_.select(vertices_[b], lobesOf(b).data(), int(count_), rules);

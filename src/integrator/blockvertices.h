@@ -5,9 +5,11 @@
 #include "integrator/batchcontext.h"
 #include "integrator/blocklobes.h"
 #include "integrator/context.h"
+#include "integrator/lastskies.h"
 #include "integrator/raywords.h"
 #include "integrator/stageset.h"
 #include "lanes/stages.h"
+#include <map>
 
 namespace alpenglow::integrator {
 
@@ -20,7 +22,7 @@ public:
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all requests of a batch whose kernel has run can be processed in blocks.
     bool takes(const BatchContext&) const;
-    /// Whether the rays that hit a batch can: no photons, no albedo output, no skies to sample at the last vertex.
+    /// Whether the rays that hit a batch can: no photons, no albedo output.
     bool takesRays(const BatchContext&) const;
     /// Lights the points and sends the next rays; leaves shadow rays in ShadowRays::queue. Returns false, without effect, if a
     /// point needs processing on its own.
@@ -30,25 +32,32 @@ public:
     /// The same for points inside a medium, with its phase function as lobe. beside: by point, MediumEvents::lightDirection().
     /// needsPoints(): whether the batch needs its points.
     bool run(BatchContext&, const Homogeneous&, std::span<const Vec3> beside, Sched&);
+    /// The same for exits of subsurface walks, where light is gathered as by diffuse(). indirect: by point, factor of its ray's
+    /// light.
+    bool runExits(BatchContext&, std::span<const float> indirect, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
     /// Samples one light for such points and evaluates their lobes toward it, to `found`. False: not possible, no effect.
     bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
 
 private:
+    class CallCount;         ///< blockvertices.cpp
     class ChosenLights;      ///< chosenlights.h
     class Guided;            ///< blockguide.h
     using Site = BlockLobes; ///< a call site of the kernel
     // blockvertices.cpp
+    static bool asksBlocks(const BatchContext&);
     bool follow(BatchContext&, Sched&, bool waits);
     bool followLobes(BatchContext&, Sched&);
     void begin(const BatchContext&, bool waits);
     bool loadVertices(const BatchContext&);
     void takeRays(const RayBlock&, bool between);
+    void endRays(size_t block, int lane, const SurfaceBinding&, bool between);
     bool loadPoints(size_t block, const BatchContext&);
     bool findSites(const BatchContext&);
     void beginSite(Site&, int number, const BatchContext&);
     bool request(const BatchContext&);
     bool requestOf(Site&, const EmitRecord&, const BatchContext&);
+    void countCalls(Site&, const EmitRecord&, const BatchContext&, std::vector<uint32_t>& before);
     void prepare();
     bool select(const BatchContext&);
     std::span<LobeBlock*> lobesOf(size_t block);
@@ -57,7 +66,10 @@ private:
     void findLit(const BoundLight*);
     void lightAlone(const BoundLight&, BatchContext&);
     static bool samples(const Site&, const BoundLight&);
+    static Lanes litBy(const LobeBlock&, const BoundLight&);
     void sampleLight(const BoundLight&, BatchContext&);
+    void lastSkies(BatchContext&); // blocklastskies.cpp
+    void endLobe(const Site&, size_t block, const BatchContext&);
     void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true);
     bool placeQuery(const BoundLight&, const LightGuide*, const struct LightNumbers&, const ShadePoint& lit, ShadePoint& query,
                     Emitter::Sample&) const;
@@ -92,9 +104,13 @@ private:
     void beginMedium(std::span<const Vec3> beside, float anisotropy);
     void loadFlown(size_t block, const BatchContext&);
     void takeParts(const BoundLight&, const BatchContext&);
+    void beginExits(const BatchContext&); // blockexits.cpp
+    void walkBelow(size_t block, BatchContext&);
+    float indirectOf(size_t point) const { return indirect_.empty() ? 1 : indirect_[point]; }
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
     void drawDirections(size_t block);
+    void beginNumbers(size_t block, render::NumberBlock&) const;
     void throwDice(size_t block);
     void sendRays(size_t block, BatchContext&, Sched&);
     void turnRays(size_t block, BatchContext&);
@@ -103,6 +119,7 @@ private:
     Accumulator& accumulator_;
     BatchPool& batches_;
     KernelInputs& inputs_;
+    LastSkies& lastSkies_;
     LightKernels& lightKernels_;
     const LightPathStates& paths_;
     MediaStacks& media_;
@@ -110,22 +127,25 @@ private:
     PhotonStage& photons_;
     RayStore& store_;
     ShadowRays& shadows_;
+    SubsurfaceWalks& subsurface_;
     SurfacePoints& surfaces_;
     VertexLight& vertexLight_;
     const Stages& stages_;
     LobeLanesList lanes_;
     bool usable_ = false; ///< the world and the settings allow blocks
     Roulette roulette_ = Roulette::None;
-    bool lastSkies_ = false;                     ///< at the last vertex of a path, skies are sampled (VertexSampling::lastSkies)
     size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: requesting sites in sites_
     bool waits_ = false;                         ///< the kernel waits for its results
     std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
+    std::span<const float> indirect_;            ///< runExits()
     std::vector<VertexBlock> vertices_;
     std::vector<RayBlock> rays_;    ///< incoming rays, then the next rays
     std::vector<Site> sites_;       ///< the first `count_`, in the order of the calls
     std::vector<LobeBlock*> block_; ///< lobesOf()
+    std::map<int, std::vector<uint32_t>> loops_; ///< countCalls(): by call site that is called several times at a point
     std::vector<Lanes> lit_;        ///< by block: points that sample lights
     std::vector<LightBlock> lights_;
+    std::vector<LastRay> ends_;
     std::vector<render::NumberBlock> pairs_, choices_;
     std::vector<ShadePoint> queries_;
     std::vector<BlockQuery> asked_;

@@ -1,21 +1,43 @@
-// Where a path ends by its depth limit: shadow rays to the skies that only rays of lobes would reach.
+// Where a path ends by its depth limit: shadow rays to the skies that only rays of lobes would reach. At that vertex lamps are
+// still sampled; a sky that is not sampled as a light must count as well, so the ray that would have reached it becomes a shadow
+// ray with the light of the sky alone.
 #pragma once
-#include "integrator/scatterrays.h"
+#include "integrator/batchcontext.h"
+#include "integrator/context.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/stageset.h"
 
 namespace alpenglow::integrator {
 
 class LightKernels;
 class LitSurfaces;
+class MediaStacks;
 class ShadowRays;
 
-class LastSkies final : VertexStage {
+/// A sampled direction of a lobe whose ray the depth limit ends.
+struct LastRay {
+    int point;              ///< index in the batch
+    const RayKind* kind;    ///< of the ray that is not sent
+    Vec3 origin, direction; ///< unit direction
+    Color weight;           ///< of the light that it would find, at its target
+    AccumulatorId target;
+    float maxDistance = 1e38f;
+    int lit = -1; ///< index in LitSurfaces::values
+    int32_t share = -1;
+    uint16_t path = 0; ///< PathRay::path of the ray
+};
+
+class LastSkies final : Stage {
 public:
-    LastSkies(const StageSet&, const VertexLobes&, ScatterRays&);
-    void run();
+    explicit LastSkies(const StageSet&);
+    /// Whether the scene has skies that only rays reach.
+    bool any() const { return !skies_.empty(); }
+    /// Queues shadow rays to these skies for rays from points of the batch.
+    void send(const BatchContext&, std::span<const LastRay>);
 
 private:
-    void lastSky(int light);
-    ScatterRays& scatter_;
+    void send(const BatchContext&, std::span<const LastRay>, int light);
+    std::vector<int> skies_; ///< numbers of these lights
     Accumulator& accumulator_;
     LightKernels& lightKernels_;
     const LightPathStates& paths_;

@@ -16,6 +16,7 @@
 #include "integrator/intersector.h"
 #include "integrator/irradiancerecords.h"
 #include "integrator/kernelinputs.h"
+#include "integrator/lastskies.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightoutputs.h"
 #include "integrator/lightpathstates.h"
@@ -84,6 +85,7 @@ struct Pipeline::Parts {
     PhotonStage photons;
     LightOutputs lightOutputs;
     DepthRays depthRays;
+    LastSkies lastSkies;
 };
 
 Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
@@ -92,12 +94,12 @@ Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
           emitted,      litSurfaces, transparency,  lightKernels, nested,      mediumEvents,   occlusion, records,
           gathers,      guide,       shadows,       opacities,    media,       atmosphere,     batches,   inputs,
           displacement, blocks,      cameraOutputs, shading,      rowShading,  waitingKernels, requests,  ambient,
-          vertexLight,  subsurface,  photons,       lightOutputs, depthRays},
+          vertexLight,  subsurface,  photons,       lightOutputs, depthRays,    lastSkies},
       store(set), paths(set), accumulator(set), intersector(set), queues(set), surfaces(set), segmentEvents(set), emitted(set),
       litSurfaces(set), transparency(set), lightKernels(set), nested(set), mediumEvents(set), occlusion(set), records(set),
       gathers(set), guide(set), shadows(set), opacities(set), media(set), atmosphere(set), batches(set), inputs(set),
       displacement(set), blocks(set), cameraOutputs(set), shading(set), rowShading(set), waitingKernels(set), requests(set),
-      ambient(set), vertexLight(set), subsurface(set), photons(set), lightOutputs(set), depthRays(set) {
+      ambient(set), vertexLight(set), subsurface(set), photons(set), lightOutputs(set), depthRays(set), lastSkies(set) {
     const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };
     const WorldImpl& world = context.world;
     if (std::any_of(world.media_.begin(), world.media_.end(), event)) segmentEvents.happens(mediumEvents);

@@ -22,6 +22,7 @@ class HitQueues;
 class Intersector;
 class IrradianceRecords;
 class KernelInputs;
+class LastSkies;
 class LightKernels;
 class LightOutputs;
 class LightPathStates;
@@ -81,6 +82,7 @@ struct StageSet {
     PhotonStage& photons;
     LightOutputs& lightOutputs;
     DepthRays& depthRays;
+    LastSkies& lastSkies;
 };
 
 } // namespace alpenglow::integrator

@@ -5,6 +5,7 @@
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
+#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/displacement.h"
 #include "integrator/intersector.h"
@@ -24,7 +25,7 @@
 namespace alpenglow::integrator {
 
 Walks::Walks(const StageSet& s, BatchContext& c, std::span<const WalkAsked> asked, std::span<const SubsurfaceMedium> below)
-    : Stage(s.context), c_(c), asked_(asked), below_(below), accumulator_(s.accumulator), batches_(s.batches),
+    : Stage(s.context), c_(c), asked_(asked), below_(below), accumulator_(s.accumulator), batches_(s.batches), blocks_(s.blocks),
       displacement_(s.displacement), intersector_(s.intersector), inputs_(s.inputs), lightKernels_(s.lightKernels),
       litSurfaces_(s.litSurfaces), photons_(s.photons), store_(s.store), requests_(s.requests), shadows_(s.shadows),
       subsurface_(s.subsurface), vertexLight_(s.vertexLight) {}
@@ -298,6 +299,12 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     c->binding = &world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
     c->below = true;
     settleAt(*c, exits);
+    std::vector<float> indirect;
+    for (const Exit& x : exits) indirect.push_back(asked_[size_t(x.asked)].indirect);
+    if (blocks_.runExits(*c, indirect, sched)) {
+        shadows_.flush(sched);
+        return batches_.giveBack(std::move(c));
+    }
     for (size_t i = 0; i < exits.size(); ++i) {
         const Exit& x = exits[i];
         const ShadePoint& p = c->points[i];

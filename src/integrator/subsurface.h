@@ -6,6 +6,7 @@ namespace alpenglow::integrator {
 
 class Accumulator;
 class BatchPool;
+class BlockVertices;
 class Displacement;
 class Intersector;
 class KernelInputs;
@@ -73,6 +74,7 @@ private:
 
     Accumulator& accumulator_;
     BatchPool& batches_;
+    BlockVertices& blocks_;
     Displacement& displacement_;
     Intersector& intersector_;
     KernelInputs& inputs_;

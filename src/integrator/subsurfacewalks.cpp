@@ -30,14 +30,20 @@ void SubsurfaceWalks::request(BatchContext& c, const SiteInfo& s, const ShadePoi
                               LobeVertex& l) {
     const SubsurfaceSite& site = *s.subsurface;
     const OfShape& of = ofShape(p.shape->attributes());
-    SubsurfaceMedium b = subsurfaceMediumOf(site, of, f, albedoInversions);
-    b.group = site.group.empty() ? of.group : groupNamed(site.group);
     const float many = of.samples > 0 ? float(of.samples) : rules_.pickOne ? 1 : float(kSamplesElsewhere);
     const float samples = site.samples < 0 ? many : f(site.samples);
     l.samples = occlusion_.samplesOf(std::max(1.f, samples), p.shape, s, c); // not a number: 1
     l.rays = &kSpecularKind; // of a single walk: with --no-indirect the light of lights still counts
     l.lights = l.deltaLights = false;
     l.below = int32_t(below.size());
+    below.push_back(mediumOf(s, p, f));
+}
+
+SubsurfaceMedium SubsurfaceWalks::mediumOf(const SiteInfo& s, const ShadePoint& p, const std::function<float(int)>& f) {
+    const SubsurfaceSite& site = *s.subsurface;
+    const OfShape& of = ofShape(p.shape->attributes());
+    SubsurfaceMedium b = subsurfaceMediumOf(site, of, f, albedoInversions);
+    b.group = site.group.empty() ? of.group : groupNamed(site.group);
     const auto triple = [&](int row) { return row < 0 ? Vec3() : Vec3(f(row), f(row + 1), f(row + 2)); };
     b.normal = normalizeOr(triple(site.normal), Vec3());
     b.from = triple(site.point);
@@ -45,7 +51,7 @@ void SubsurfaceWalks::request(BatchContext& c, const SiteInfo& s, const ShadePoi
     const float apart = p.surface.displaced ? length(p.surface.dPdu) * p.du + length(p.surface.dPdv) * p.dv : 0;
     const float away = length(b.from - p.P);
     b.elsewhere = std::isfinite(away) && away > geometry::roundingError(p.P) + 4 * p.surface.pError + apart;
-    below.push_back(b);
+    return b;
 }
 
 void SubsurfaceWalks::walk(BatchContext& c, Sched& sched) {

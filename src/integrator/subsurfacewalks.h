@@ -14,6 +14,8 @@ struct StageSet;
 class SubsurfaceWalks final : Stage {
 public:
     explicit SubsurfaceWalks(const StageSet&);
+    /// Parameters of a subsurface() call at a point.
+    SubsurfaceMedium mediumOf(const SiteInfo&, const ShadePoint&, const std::function<float(int)>& row);
     /// Makes the lobe of a subsurface() call: its rays walk below the surface.
     void request(BatchContext&, const SiteInfo&, const ShadePoint&, const std::function<float(int)>& row, LobeVertex&);
     /// Follows the walks that a batch has requested.

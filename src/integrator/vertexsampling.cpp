@@ -1,5 +1,6 @@
 // Runs the stages of vertexsampling.h in order, and their shared functions.
 #include "integrator/vertexsampling.h"
+#include "integrator/lightpathstates.h"
 #include "integrator/litsurfaces.h"
 #include "integrator/photonstage.h"
 
@@ -7,9 +8,9 @@ namespace alpenglow::integrator {
 
 VertexSampling::VertexSampling(const StageSet& s)
     : VertexStage(s, *this), selection_(s, *this, photonScatter_), lightSampling_(s, *this, connection_, photonScatter_),
-      connection_(s, *this, lightSampling_), lastSkies_(s, *this, scatter_), guideScatter_(s, *this, selection_),
-      photonScatter_(s, *this, selection_, scatter_), scatter_(s, *this, selection_, connection_, photonScatter_),
-      litSurfaces_(s.litSurfaces), photons_(s.photons) {}
+      connection_(s, *this, lightSampling_), guideScatter_(s, *this, selection_), photonScatter_(s, *this, selection_, scatter_),
+      scatter_(s, *this, selection_, connection_, photonScatter_), lastSkies_(s.lastSkies), litSurfaces_(s.litSurfaces),
+      paths_(s.paths), photons_(s.photons) {}
 
 void VertexSampling::run(BatchContext& c, Sched& sched) {
     if (requests_.lobes.empty()) return;
@@ -20,7 +21,7 @@ void VertexSampling::run(BatchContext& c, Sched& sched) {
     selection_.measureAlbedos();
     selection_.lightDirections();
     if (rules_.lightsAtRequests) lightSampling_.run(sched);
-    if (rules_.emissionCounts) lastSkies_.run();
+    if (rules_.emissionCounts && lastSkies_.any()) lastSkies();
     guideScatter_.run(sched);
     if (photons_.photonTrace()) photonScatter_.restPhotons();
     else if (rules_.pickOne) photonScatter_.takePhotons(sched);
@@ -37,6 +38,28 @@ void VertexLobes::begin(BatchContext& c, std::span<const LobeVertex> lobes) {
     for (size_t i = 1; i < first.size(); ++i) first[i] += first[i - 1];
     next_.assign(first.begin(), first.end() - 1);
     for (size_t i = 0; i < lobes.size(); ++i) order[size_t(next_[size_t(lobes[i].point)]++)] = int(i);
+}
+
+/// Samples lobes whose rays the depth limit ends, of those that sample lights, for skies.
+void VertexSampling::lastSkies() {
+    scatter_.sent.clear();
+    for (size_t point = 0; point < c_->points.size(); ++point)
+        for (const int i : lobesOf(point)) {
+            const LobeVertex& l = requests_.lobes[size_t(i)];
+            if (l.last && l.lights && !l.elsewhere && !l.delta) scatter_.sent.push_back({int(point), i, 1, 1, true, Vec3(), {}});
+        }
+    if (scatter_.sent.empty()) return;
+    scatter_.draw(0);
+    last_.clear();
+    for (const LobeRay& s : scatter_.sent) {
+        if (!s.goes || !(s.value.pdf > 0)) continue;
+        const LobeVertex& l = requests_.lobes[size_t(s.lobe)];
+        const Color weight = l.weight * (s.value.colour / s.value.pdf);
+        const uint16_t path = paths_.atLobe(l, c_->points[size_t(s.point)], rayOf(l), s.w);
+        last_.push_back({s.point, l.rays, origin(l, s.w), s.w, l.ownsTarget ? weight : weight * rayOf(l).weight, l.target,
+                         l.maxDistance, l.lit, shareOf(l), path});
+    }
+    lastSkies_.send(*c_, last_);
 }
 
 /// A vertex gives one answer to lights that query its surface. If its requests are summed, its kernel has finished: outputs have

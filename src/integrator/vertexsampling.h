@@ -31,14 +31,17 @@ public:
 
 private:
     void tellLights();
+    void lastSkies();
+    std::vector<LastRay> last_;
     LobeSelection selection_;
     LightSampling lightSampling_;
     Connection connection_;
-    LastSkies lastSkies_;
     GuideScatter guideScatter_;
     PhotonScatter photonScatter_;
     ScatterRays scatter_;
+    LastSkies& lastSkies_;
     LitSurfaces& litSurfaces_;
+    const LightPathStates& paths_;
     PhotonStage& photons_;
 };
 

@@ -26,10 +26,11 @@ struct alignas(64) VertexBlock {
     uint32_t low[kBlock], high[kBlock], index[kBlock], vertex[kBlock]; ///< keys of random numbers: render::NumberBlock
     uint32_t lightVertex[kBlock];                                      ///< replaces `vertex` for light samples
     Lanes points = 0;
-    Lanes guided = 0;     ///< points of guide rays: only mirrors are followed
-    Lanes last = 0;       ///< points at the depth limit: lobes are not followed
-    bool through = false; ///< some point is transparent
-    bool waits = false;   ///< a kernel waits for each ray and reads its distance: rays without contribution are sent, too
+    Lanes guided = 0;       ///< points of guide rays: only mirrors are followed
+    Lanes last = 0;         ///< points at the depth limit of the picture
+    Lanes deep[2] = {0, 0}; ///< points where no specular ([0]), no diffuse ([1]) ray is sent, because of any depth limit
+    bool through = false;   ///< some point is transparent
+    bool waits = false;     ///< a kernel waits for each ray and reads its distance: rays without contribution are sent, too
 };
 
 /// The lobes that a call site requests at the points of a block.
@@ -39,11 +40,13 @@ struct alignas(64) LobeBlock {
     Row chosen;          ///< by select(): probability of following its ray
     Lanes asked = 0;
     Lanes lights = 0; ///< points whose lobe samples lights
+    Lanes ended = 0;  ///< by select(): points where a depth limit ends the ray that would have been sent
 };
 
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.
 struct LobeArguments {
-    int axis = -1, wo = -1, horizon = -1, a = -1;
+    int axis = -1; ///< not given: the normal
+    int wo = -1, horizon = -1, a = -1;
     int from = -1;        ///< trace(): where its ray starts
     int lights = -1;      ///< trace(): "samplearealights" or "samplelights"; points that say no are looked at one by one
     int samples = -1;     ///< trace(): how many rays it asks for; more than kMostSamples are reported point by point
@@ -135,6 +138,8 @@ enum class Roulette : uint8_t { None, Throughput, Local };
 struct SelectRules {
     uint32_t lighting = 0; ///< bit i: site i is a lighting shadeop
     bool unbiased = false; ///< disables the energy rule
+    uint32_t diffuse = 0;  ///< bit i: rays of site i are diffuse
+    uint32_t endless = 0;  ///< bit i: depth limits do not end the rays of site i
 };
 /// Further results of select(): points whose reflectance exceeds 1, alone or with transparency; points with probabilities that
 /// are not finite.

@@ -17,7 +17,7 @@ AL_INLINE void giveDirections(const VertexBlock& v, const LobeArguments& a, cons
         usual &= good;
         return d;
     };
-    store3(to.lobe + kRowAxis, at, direction(a.axis, n));
+    store3(to.lobe + kRowAxis, at, a.axis >= 0 ? direction(a.axis, n) : n);
     if (a.needsWo) {
         V3 viewer = toViewer(v, at);
         if (a.wo >= 0) viewer = direction(a.wo, viewer);
@@ -90,6 +90,11 @@ AL_INLINE vf worthOf(const V3& share, const V3& left, vm competes) {
     return select(competes, dot(share, left) / vf(3), luminance(share));
 }
 
+/// Points where a depth limit ends the rays of a site.
+AL_INLINE Lanes deepOf(const VertexBlock& v, const SelectRules& rules, int site) {
+    return rules.endless >> site & 1 ? 0 : v.deep[rules.diffuse >> site & 1];
+}
+
 AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules, int at,
                            Selected& found) {
     V3 sum{vf(0), vf(0), vf(0)}, clear = sum;
@@ -102,15 +107,17 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
     vi lobes(0);
     for (int s = 0; s < count; ++s) {
         LobeBlock& l = *sites[s];
+        const Lanes deep = deepOf(v, rules, s);
         const vm mask = maskFrom(l.asked, at);
         const V3 weight = absolute(load3(l.weight, at));
         const vf albedo = load(l.lobe[kRowAlbedo] + at), worth = worthOf(weight, left, competes) * albedo;
         if (rules.lighting >> s & 1) sum = choose(mask, sum + weight * albedo, sum);
         found.failed |= bitsFrom(mask & ~finite(worth), at);
-        const vm ended = maskFrom(v.guided, at) & (load(l.lobe[kRowDelta] + at) == 0);
+        const vm guided = maskFrom(v.guided, at) & (load(l.lobe[kRowDelta] + at) == 0);
         const vm follows = mask & ~(worth < 0);
         found.cut |= bitsFrom(follows & (worth > 0), at) & v.last;
-        store(l.chosen + at, select(follows & ~maskFrom(v.last, at) & ~ended, worth, vf(0)));
+        l.ended |= bitsFrom(follows & (worth > 0) & ~guided, at) & deep;
+        store(l.chosen + at, select(follows & ~maskFrom(deep, at) & ~guided, worth, vf(0)));
         lobes -= mask;
     }
     const vf scale = energyScaleOf(sum, clear, rules);
@@ -140,7 +147,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
             const vm whole = __builtin_convertvector(total == c, vi), none = __builtin_convertvector(~(total > 0), vi);
             share = select(alone, share, select(none, vf(0), select(whole, vf(1), __builtin_convertvector(c / total, vf))));
         }
-        if (v.waits) share = select(maskFrom(l.asked & ~v.last, at), vf(1), vf(0));
+        if (v.waits) share = select(maskFrom(l.asked & ~deepOf(v, rules, s), at), vf(1), vf(0));
         store(l.chosen + at, share);
     }
     const vd passes = __builtin_convertvector(behind, vd) / total;
@@ -150,6 +157,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
 
 static Selected selectLobes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules) {
     Selected found;
+    for (int s = 0; s < count; ++s) sites[s]->ended = 0;
     for (int at = 0; at < kBlock; at += kW) selectLanes(v, sites, count, rules, at, found);
     return found;
 }

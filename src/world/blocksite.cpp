@@ -3,13 +3,12 @@
 
 namespace alpenglow::world {
 
-namespace {
-/// Whether a call requests lobes.
 bool asksLobes(SiteKind k) {
     return k == SiteKind::Diffuse || k == SiteKind::Specular || k == SiteKind::Phong || k == SiteKind::Trace ||
            k == SiteKind::Subsurface || k == SiteKind::Gather;
 }
 
+namespace {
 /// Whether a trace() has only parameters that blocks support.
 bool isPlainTrace(const SiteInfo& s) {
     const TraceSite& t = *s.trace;
@@ -71,6 +70,8 @@ std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
         if (s.lobe->distribution) bindDistribution(s, a);
         a.a = s.lobe->has(kTakesExponent) ? s.rowExponent : s.rowCone;
         a.otherwise = s.lobe->has(kTakesExponent) ? 1000 : 0;
+        break;
+    case SiteKind::Subsurface: // a walk starts at the point, whatever the direction
         break;
     default:
         return nullptr;

@@ -203,14 +203,14 @@ TEST(Blocks, FollowWhatKernelsWaitFor) {
 }
 
 TEST(Blocks, LetLightThroughAndLeaveWhatNeedsALook) {
-    writeShader("turns", R"(surface turns() {
+    writeShader("many", R"(surface many() {
     normal n = faceforward(normalize(N), I);
     float i;
-    for (i = 0; i < 3; i += 1) Ci += .2 * Cs * diffuse(n);
+    for (i = 0; i < 40; i += 1) Ci += .015 * Cs * diffuse(n);
 })");
     writeShader("tiny", R"(surface tiny() { Ci = diffuse(normal(1e-25 * normalize(N))); })");
     writeShader("away", R"(surface away() { Ci = .8 * trace(P + .1 * normalize(N), vector(0, 1, 0)); })");
-    for (const char* shader : {"turns", "tiny", "away"}) {
+    for (const char* shader : {"many", "tiny", "away"}) {
         const std::string rib = roomOf("\"" + std::string(shader) + "\"");
         const Traced one = trace(rib, false), all = trace(rib, true);
         EXPECT_GT(sumOf(one), 1) << shader;
@@ -306,7 +306,65 @@ TEST(Blocks, EndPathsWhereTheyAreAsLongAsTheyMayBe) {
                 EXPECT_EQ(differences(one, all), 0u) << shader << more << depth;
                 EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
                 EXPECT_GT(all.cut, 0u) << shader << more << depth;
-                if (more.empty()) EXPECT_GT(all.inBlocks, all.points / 2) << shader << depth; // skies are asked point by point
+                EXPECT_GT(all.inBlocks, all.points / 3) << shader << more << depth; // shadow rays ask for opacity, too
+            }
+}
+
+TEST(Blocks, FollowLobesToTheDepthsOfTheirSurfaces) {
+    writeShader("two", R"(surface two() {
+    normal n = faceforward(normalize(N), I);
+    Ci = Cs * (.4 * diffuse(n) + .3 * specular(n, -normalize(I), .3) + .2 * trace(P, reflect(normalize(I), n)));
+    Oi = Os;
+})");
+    const std::string sky = "LightSource \"envlight\" 9 \"intensity\" .3\n", clear = "Opacity .5 .6 .7\n";
+    const std::string fog = "AttributeBegin\nSurface \"null\" Interior \"medium\" \"color scattering\" [.1 .12 .2]\n"
+                            "Translate 0 0 5\nSphere 7.5 -7.5 7.5 360\nAttributeEnd\n";
+    for (const std::string& more : {sky, clear + sky, fog})
+        for (const auto& [diffuse, specular] : {std::pair(0, 0), {1, 0}, {0, 2}, {2, -1}, {-1, 1}}) {
+            const std::string rib = roomOf("\"two\"", "Attribute \"trace\" \"int maxdiffusedepth\" " + std::to_string(diffuse) +
+                                                          " \"int maxspeculardepth\" " + std::to_string(specular) + "\n" + more);
+            const Traced one = trace(rib, false), all = trace(rib, true), narrow = trace(rib, true, 4);
+            EXPECT_GT(sumOf(one), 1) << more << diffuse << specular;
+            EXPECT_EQ(differences(one, all), 0u) << more << diffuse << specular;
+            EXPECT_EQ(differences(one, narrow), 0u) << more << diffuse << specular;
+            EXPECT_EQ(one.cut, all.cut) << more << diffuse << specular;
+            EXPECT_GT(all.inBlocks, all.points / 3) << more << diffuse << specular;
+        }
+}
+
+TEST(Blocks, FollowLoopsAndWalksBelowSurfaces) {
+    // Turns without a weight, of different number at neighbouring points, with lights and without.
+    writeShader("turns", R"(surface turns() {
+    normal n = faceforward(normalize(N), I);
+    color sum = .2 * diffuse(n);
+    float i, many = 1 + mod(floor(40 * u), 3);
+    for (i = 0; i < many; i += 1) {
+        float w = mod(floor(30 * v) + i, 3) * .12;
+        sum += w * specular(n, -normalize(I), .1 + .1 * i);
+        sum += .1 * trace(P, reflect(normalize(I), normalize(n + .1 * i * vector(xcomp(P), 1, 0))), "samplecone", .1 * i);
+    }
+    Ci = Cs * sum;
+})");
+    writeShader("milky", R"(surface milky() {
+    normal n = faceforward(normalize(N), I);
+    Ci = Cs * subsurface(P, n, "scattering", color(20, 30, 40), "absorption", color(.5, .2, .1), "ior", 1.3)
+         + .2 * specular(n, -normalize(I), .2);
+    Oi = Os;
+})");
+    const std::string sky = "LightSource \"envlight\" 9 \"intensity\" .3\n";
+    const std::string shallow = "Attribute \"trace\" \"int maxdiffusedepth\" 1 \"int maxspeculardepth\" 1\n";
+    Settings local;
+    local.localRoulette = true;
+    for (const char* shader : {"\"turns\"", "\"milky\""})
+        for (const std::string& more : {std::string(), sky, shallow, sky + "Opacity .5 .6 .7\n"})
+            for (const Settings& s : {Settings(), local}) {
+                const std::string rib = roomOf(shader, more);
+                const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);
+                EXPECT_GT(sumOf(one), 1) << shader << more;
+                EXPECT_EQ(one.inBlocks, 0u);
+                EXPECT_GT(all.inBlocks, all.points / 3) << shader << more;
+                EXPECT_EQ(differences(one, all), 0u) << shader << more;
+                EXPECT_EQ(differences(one, trace(rib, true, 4, -1, s)), 0u) << shader << more;
             }
 }
 

@@ -110,6 +110,7 @@ TEST(Stages, RequestsAreThoseOfOnePoint) {
 /// The chances at point i, and what they leave to the ray behind it: light comes through there.
 struct Chances {
     std::vector<float> chosen;
+    std::vector<bool> ended;
     float passes = 1, scale = 1;
 };
 Chances chancesOf(const VertexBlock& v, const std::vector<LobeBlock>& lobes, int i) {
@@ -122,7 +123,8 @@ Chances chancesOf(const VertexBlock& v, const std::vector<LobeBlock>& lobes, int
     for (size_t k = 0; k < lobes.size(); ++k) {
         const bool asks = lobes[k].asked >> i & 1;
         const Color w = absolute(at(lobes[k].weight, i));
-        c.chosen.push_back(asks && !(v.last >> i & 1) ? worth(w) * lobes[k].lobe[kRowAlbedo][i] : 0);
+        c.chosen.push_back(asks && !(v.deep[k == 1] >> i & 1) ? worth(w) * lobes[k].lobe[kRowAlbedo][i] : 0);
+        c.ended.push_back(asks && (v.deep[k == 1] >> i & 1) && worth(w) * lobes[k].lobe[kRowAlbedo][i] > 0);
         if (asks && k % 2 == 0) sum += w * lobes[k].lobe[kRowAlbedo][i];
         asked += asks;
     }
@@ -146,6 +148,7 @@ TEST(Stages, SelectsByWhatLobesGiveBack) {
         VertexBlock before = vertices(d);
         before.through = turn % 3 == 0;
         before.last = d.rarely() ? uint32_t(d.random()) & 0xffffu : 0;
+        for (Lanes& deep : before.deep) deep = before.last | (d.rarely() ? uint32_t(d.random()) & 0xffffu : 0);
         for (int i = 0; i < kBlock; ++i) put(before.clear, i, d.rarely() ? Color(0) : Color(d.one(), d.one(), d.one()));
         std::vector<LobeBlock> lobes;
         for (int k = 0; k < 1 + turn % 4; ++k) lobes.push_back(lobe(d, false));
@@ -154,13 +157,15 @@ TEST(Stages, SelectsByWhatLobesGiveBack) {
             std::vector<LobeBlock> mine = lobes;
             std::vector<LobeBlock*> sites;
             for (LobeBlock& l : mine) sites.push_back(&l);
-            const Selected found = s->select(v, sites.data(), int(sites.size()), {0b0101, false});
+            const Selected found = s->select(v, sites.data(), int(sites.size()), {0b0101, false, 0b0010});
             EXPECT_EQ(found.failed, 0u);
             EXPECT_EQ(found.cut & ~before.last, 0u);
             for (int i = 0; i < kBlock; ++i) {
                 const Chances c = chancesOf(before, lobes, i);
-                for (size_t k = 0; k < lobes.size(); ++k)
+                for (size_t k = 0; k < lobes.size(); ++k) {
                     EXPECT_TRUE(same(mine[k].chosen[i], c.chosen[k])) << k << " of " << lobes.size();
+                    EXPECT_EQ(mine[k].ended >> i & 1, c.ended[k]) << k << " of " << lobes.size();
+                }
                 EXPECT_TRUE(same(v.energyScale[i], c.scale));
                 EXPECT_TRUE(same(v.passes[i], c.passes));
                 EXPECT_EQ((found.bright | found.brightWithClear) >> i & 1, c.scale < .999f && (v.points >> i & 1));

@@ -1,0 +1,72 @@
+// Subsurface scattering for vertices in blocks: walks that lobes select, and the light at their exits.
+#include "integrator/blockvertices.h"
+#include "integrator/photonstage.h"
+#include "integrator/subsurfacewalks.h"
+#include "integrator/surfacepoints.h"
+#include "services/random.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::integrator {
+
+/// Turns rays of subsurface() into walks.
+void BlockVertices::walkBelow(size_t b, BatchContext& c) {
+    for (Lanes left = next_.goes; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const Site& s = sites_[size_t(next_.site[i])];
+        if (!s.walks) continue;
+        surfaces_.pointsOfRows(c);
+        const size_t point = b * kBlock + size_t(i);
+        const float* rows = s.rows[b] + i;
+        next_.goes &= ~(1u << i);
+        subsurface_.walks.push_back({int(point),
+                                     int32_t(subsurface_.below.size()),
+                                     {next_.weight[0][i], next_.weight[1][i], next_.weight[2][i]},
+                                     c.targets[point],
+                                     next_.vertex[i],
+                                     shareOf(c.rays[point]),
+                                     vertices_[b].energyScale[i]});
+        subsurface_.below.push_back(
+            subsurface_.mediumOf(*s.info, c.points[point], [&](int row) { return rows[size_t(row) * size_t(s.stride)]; }));
+    }
+}
+
+bool BlockVertices::runExits(BatchContext& c, std::span<const float> indirect, Sched& sched) {
+    const bool plain = usable_ && plain_[size_t(c.binding->lightList)];
+    if (!plain || photons_.photonTrace() || !takesRays(c)) return false;
+    if (!std::all_of(indirect.begin(), indirect.end(), [](float x) { return x > 0; })) return false; // guide rays need light
+    begin(c, false);
+    if (!loadVertices(c)) return false;
+    indirect_ = indirect;
+    beginExits(c);
+    return followLobes(c, sched);
+}
+
+/// Sets the lobes: diffuse about the normal.
+void BlockVertices::beginExits(const BatchContext& c) {
+    static const LobeKind* const kind = findLobe("diffuse");
+    count_ = 1;
+    if (sites_.empty()) sites_.emplace_back();
+    Site& s = sites_[0];
+    s.number = kSegmentEvent;
+    s.info = nullptr;
+    s.kind = kind;
+    s.lanes = &lanes_.lobes[kind->index];
+    s.rays = &kDiffuseKind;
+    s.lighting = s.lights = s.diffuse = true;
+    s.clearCalls();
+    s.lobes.resize(std::max(s.lobes.size(), blocks_));
+    for (size_t b = 0; b < blocks_; ++b) {
+        LobeBlock& l = s.lobes[b];
+        l.asked = vertices_[b].points;
+        l.lights = 0;
+        std::fill_n(l.lobe[kRowA], kBlock, 0.f);
+        std::fill_n(l.lobe[kRowHasHorizon], kBlock, 0.f);
+        for (size_t i = 0; i < size_t(kBlock); ++i) {
+            const ShadePoint& p = c.points[std::min(b * kBlock + i, points_ - 1)];
+            for (int q = 0; q < 3; ++q) l.weight[q][i] = 1, l.lobe[kRowAxis + q][i] = p.N[q], l.lobe[kRowWo + q][i] = -p.I[q];
+        }
+    }
+}
+
+} // namespace alpenglow::integrator

@@ -7,10 +7,6 @@
 
 namespace alpenglow::integrator {
 
-namespace {
-constexpr uint32_t kDraws = 8;
-} // namespace
-
 bool LobeSelection::albedoIsMeasured(const LobeVertex& l) const {
     return world_.settings_.firstSeen && !l.ownsTarget && !l.delta && l.below < 0 &&
            (l.kind->distribution || l.rays->type != RayType::Diffuse);
@@ -26,10 +22,10 @@ void LobeSelection::measureAlbedos() {
     std::vector<Color> sum(lobes.size(), Color(0));
     std::vector<Vec3> ways(lobes.size());
     std::vector<uint8_t> drawn(lobes.size());
-    for (uint32_t k = 0; k < kDraws; ++k) {
+    for (uint32_t k = 0; k < kAlbedoDraws; ++k) {
         numbers_.clear();
         for (const LobeVertex* l : lobes)
-            numbers_.askPair(store_.random(rayOf(*l)).draw(k, kDraws).numbers(), rayOf(*l).vertex, kAlbedo,
+            numbers_.askPair(store_.random(rayOf(*l)).draw(k, kAlbedoDraws).numbers(), rayOf(*l).vertex, kAlbedo,
                              l->site * 4096 + l->occurrence);
         numbers_.draw();
         for (size_t i = 0; i < lobes.size(); ++i) rows.ask(lobes[i]->place, numbers_.pair(i));
@@ -42,7 +38,7 @@ void LobeSelection::measureAlbedos() {
     }
     for (size_t i = 0; i < lobes.size(); ++i) {
         const PathRay& from = rayOf(*lobes[i]);
-        const Color seen = from.weight * lobes[i]->weight * (sum[i] / float(kDraws));
+        const Color seen = from.weight * lobes[i]->weight * (sum[i] / float(kAlbedoDraws));
         if (isFinite(seen)) accumulator_.results[size_t(from.sample->path)]->albedo += seen;
     }
 }

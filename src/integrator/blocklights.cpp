@@ -10,6 +10,7 @@
 #include "integrator/shadowrays.h"
 #include "integrator/surfacepoints.h"
 #include "integrator/vertexlight.h"
+#include "world/emitterfootprint.h"
 #include <algorithm>
 #include <bit>
 #include <numeric>
@@ -43,15 +44,17 @@ void BlockVertices::light(BatchContext& c) {
 void BlockVertices::findLit(const BoundLight* light) {
     lit_.assign(blocks_, 0);
     for (size_t k = 0; k < count_; ++k)
-        for (size_t b = 0; b < blocks_ && (light ? samples(sites_[k], *light) : sites_[k].lights); ++b)
-            lit_[b] |= light ? litBy(sites_[k].lobes[b], *light) : sites_[k].lobes[b].lights;
+        for (size_t b = 0; b < blocks_ && sites_[k].lights; ++b)
+            lit_[b] |= light ? litBy(k, b, *light) : sites_[k].lobes[b].lights;
     litBlocks_.clear();
     for (size_t b = 0; b < blocks_; ++b)
         if (lit_[b]) litBlocks_.push_back(b);
 }
 
 /// Points whose lobe samples a light. The light guide completes rays, so its skies need lobes that send some.
-Lanes BlockVertices::litBy(const LobeBlock& l, const BoundLight& light) {
+Lanes BlockVertices::litBy(size_t site, size_t b, const BoundLight& light) const {
+    if ((onlySite_ >= 0 && onlySite_ != int(site)) || !samples(sites_[site], light)) return 0;
+    const LobeBlock& l = sites_[site].lobes[b];
     Lanes some = l.lights;
     for (int i = 0; light.guidable && i < kBlock; ++i) some &= ~(Lanes(!(l.chosen[i] > 0)) << i);
     return some;
@@ -59,6 +62,7 @@ Lanes BlockVertices::litBy(const LobeBlock& l, const BoundLight& light) {
 
 /// Samples one light for the points of lit_ and litBlocks_.
 void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
+    if (isWide(light) && onlySite_ < 0) return lightWide(light, c);
     if (inRows_[size_t(&light - world_.lights_.data())]) return lightInRows(light, c);
     sampleLight(light, c);
     if (asked_.empty()) return;
@@ -66,6 +70,17 @@ void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
     lightKernels_.evaluateLight(light, queries_, values_);
     takeValues(light, c);
     connect(light, c);
+}
+
+/// Samples an emitter that filters over its surface, for one call site after the other: their lobes differ in width.
+void BlockVertices::lightWide(const BoundLight& light, BatchContext& c) {
+    for (size_t k = 0; k < count_; ++k) {
+        onlySite_ = int(k);
+        findLit(&light);
+        if (c.between) takeParts(light, c);
+        if (!litBlocks_.empty()) lightAlone(light, c);
+    }
+    onlySite_ = -1;
 }
 
 /// Whether lobes of a call site sample a light. trace() without "samplelights" samples emitters and skies only; it samples none
@@ -119,8 +134,13 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
             LightNumbers u;
             if (takesPair(light, true)) u.pair = {pairs_[b].x[lane], pairs_[b].y[lane]};
             if (takesChoice(light)) u.choose = choices_[b].x[lane];
-            const bool placed = placeQuery(light, guide, u, c.points[size_t(point)], q, a.sample);
+            const ShadePoint& at = c.points[size_t(point)];
+            const bool placed = placeQuery(light, guide, u, at, q, a.sample);
             if (!placed) asked_.pop_back();
+            else if (onlySite_ >= 0) // isWide()
+                setEmitterFootprint(
+                    q, c.rays[size_t(point)], at.P,
+                    spreadBehind(c.rays[size_t(point)], sites_[size_t(onlySite_)].lobes[b].lobe[kRowSpread][lane]));
         }
     queries_.resize(asked_.size());
 }
@@ -209,8 +229,8 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
     for (size_t k = 0; k < count_; ++k) {
         const Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
-        const Lanes asked = l.asked = litBy(lobe, of) & placed;
-        if (!asked || !samples(s, of)) continue;
+        const Lanes asked = l.asked = litBy(k, b, of) & placed;
+        if (!asked) continue;
         s.lanes->evaluate(lobe.lobe[0], asked, l.w[0], value_[0]);
         for (Lanes some = contribute(s, vertices_[b], lobe, l, c, points); some; some &= some - 1) {
             const size_t lane = size_t(std::countr_zero(some)), point = b * kBlock + lane;

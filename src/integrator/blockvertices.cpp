@@ -19,15 +19,18 @@ namespace alpenglow::integrator {
 namespace {
 Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
 
-/// Whether blocks support a light: an emitter or a light with a position that queries no surface and has no further outputs.
-bool isPlainLight(const BoundLight& l) { return !l.asksSurface && !l.channels && l.sentCl < 0 && !usesFootprint(l); }
+/// Whether blocks support a light: one that queries no surface and has no further outputs. chosen: it is one of many, of which
+/// each point samples a few.
+bool isPlainLight(const BoundLight& l, bool chosen) {
+    return !l.asksSurface && !l.channels && l.sentCl < 0 && !(chosen && isWide(l));
+}
 } // namespace
 
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lastSkies_(s.lastSkies),
       lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons),
-      store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces), vertexLight_(s.vertexLight), stages_(stages()),
-      lanes_(lobeLanes(lobeWidth())) {
+      store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces), vertexLight_(s.vertexLight),
+      stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     std::fill_n(whole_, kBlock, 1.f);
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
@@ -40,7 +43,7 @@ BlockVertices::BlockVertices(const StageSet& s)
     for (const WorldImpl::LightList& list : world_.lightLists_)
         plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
             const BoundLight& light = world_.lights_[size_t(l)];
-            return isPlainLight(light) && !(light.hazy && !world_.media_.empty());
+            return isPlainLight(light, !list.chooser.empty()) && !(light.hazy && !world_.media_.empty());
         }));
     for (const BoundLight& l : world_.lights_) inRows_.push_back(inRows(l, l.kernel));
     chosen_ = std::make_unique<ChosenLights>(*this);
@@ -49,10 +52,8 @@ BlockVertices::BlockVertices(const StageSet& s)
 BlockVertices::~BlockVertices() = default;
 
 bool BlockVertices::takesRays(const BatchContext& c) const {
-    const bool firstSeen = world_.settings_.firstSeen;
     return std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
-        return r.quiet || (firstSeen && r.counts) || r.scattered >= limits::kPathDepth ||
-               (world_.photons_ && world_.photons_->pass(r.sample->sample));
+        return r.quiet || r.scattered >= limits::kPathDepth || (world_.photons_ && world_.photons_->pass(r.sample->sample));
     });
 }
 
@@ -101,6 +102,7 @@ bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
     if (!select(c)) return false;
     if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
+    if (world_.settings_.firstSeen && !waits_ && !c.between) showAlbedo(c);
     lightDirections(c);
     light(c);
     if (lastSkies_.any()) lastSkies(c);

@@ -22,7 +22,7 @@ public:
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all requests of a batch whose kernel has run can be processed in blocks.
     bool takes(const BatchContext&) const;
-    /// Whether the rays that hit a batch can: no photons, no albedo output.
+    /// Whether the rays that hit a batch can: no photons.
     bool takesRays(const BatchContext&) const;
     /// Lights the points and sends the next rays; leaves shadow rays in ShadowRays::queue. Returns false, without effect, if a
     /// point needs processing on its own.
@@ -65,8 +65,9 @@ private:
     void light(BatchContext&);
     void findLit(const BoundLight*);
     void lightAlone(const BoundLight&, BatchContext&);
+    void lightWide(const BoundLight&, BatchContext&);
     static bool samples(const Site&, const BoundLight&);
-    static Lanes litBy(const LobeBlock&, const BoundLight&);
+    Lanes litBy(size_t site, size_t block, const BoundLight&) const;
     void sampleLight(const BoundLight&, BatchContext&);
     void lastSkies(BatchContext&); // blocklastskies.cpp
     void endLobe(const Site&, size_t block, const BatchContext&);
@@ -107,6 +108,10 @@ private:
     void beginExits(const BatchContext&); // blockexits.cpp
     void walkBelow(size_t block, BatchContext&);
     float indirectOf(size_t point) const { return indirect_.empty() ? 1 : indirect_[point]; }
+    // blockalbedo.cpp
+    static bool albedoIsMeasured(const Site&);
+    void showAlbedo(BatchContext&);
+    static Color measuredAlbedo(const Site&, const PathRay&, size_t point);
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
     void drawDirections(size_t block);
@@ -139,11 +144,12 @@ private:
     std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
     std::span<const float> indirect_;            ///< runExits()
     std::vector<VertexBlock> vertices_;
-    std::vector<RayBlock> rays_;    ///< incoming rays, then the next rays
-    std::vector<Site> sites_;       ///< the first `count_`, in the order of the calls
-    std::vector<LobeBlock*> block_; ///< lobesOf()
+    std::vector<RayBlock> rays_;                 ///< incoming rays, then the next rays
+    std::vector<Site> sites_;                    ///< the first `count_`, in the order of the calls
+    std::vector<LobeBlock*> block_;              ///< lobesOf()
     std::map<int, std::vector<uint32_t>> loops_; ///< countCalls(): by call site that is called several times at a point
-    std::vector<Lanes> lit_;        ///< by block: points that sample lights
+    std::vector<Lanes> lit_;                     ///< by block: points that sample lights
+    int onlySite_ = -1;                          ///< lightWide(): the only site that samples the light; -1: all
     std::vector<LightBlock> lights_;
     std::vector<LastRay> ends_;
     std::vector<render::NumberBlock> pairs_, choices_;

@@ -198,7 +198,7 @@ void LightSampling::placeWanted() {
         false; // a light that filters over its surface is asked once for every width of the lobes at a point, at the same sample
     for (const auto& [of, point, chance, draw] : wanted_) {
         const BoundLight& light = *of;
-        if (of != std::exchange(last, of)) wide = light.kind == LightKind::Area && usesFootprint(light);
+        if (of != std::exchange(last, of)) wide = isWide(light);
         const ShadePoint& lit = c_->points[size_t(point)];
         ShadePoint& p = queries.add(point, light, chance, draw);
         tellLit(p, lit);

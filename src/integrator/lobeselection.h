@@ -14,6 +14,9 @@ class PhotonStage;
 class Transparency;
 class VertexLight;
 
+/// Sampled directions for the estimate of an albedo.
+inline constexpr uint32_t kAlbedoDraws = 8;
+
 class LobeSelection final : VertexStage {
 public:
     LobeSelection(const StageSet&, const VertexLobes&, PhotonScatter&);

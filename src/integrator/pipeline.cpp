@@ -94,7 +94,7 @@ Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
           emitted,      litSurfaces, transparency,  lightKernels, nested,      mediumEvents,   occlusion, records,
           gathers,      guide,       shadows,       opacities,    media,       atmosphere,     batches,   inputs,
           displacement, blocks,      cameraOutputs, shading,      rowShading,  waitingKernels, requests,  ambient,
-          vertexLight,  subsurface,  photons,       lightOutputs, depthRays,    lastSkies},
+          vertexLight,  subsurface,  photons,       lightOutputs, depthRays,   lastSkies},
       store(set), paths(set), accumulator(set), intersector(set), queues(set), surfaces(set), segmentEvents(set), emitted(set),
       litSurfaces(set), transparency(set), lightKernels(set), nested(set), mediumEvents(set), occlusion(set), records(set),
       gathers(set), guide(set), shadows(set), opacities(set), media(set), atmosphere(set), batches(set), inputs(set),

@@ -72,7 +72,8 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
     count(c);
     requestOthers(c, sched);
     shadows_.flush(sched);
-    const bool outputs = !world_.wanted_.empty() && std::any_of(c.rays.begin(), c.rays.end(), [](auto& r) { return r.counts; });
+    const bool asks = !world_.wanted_.empty() || world_.settings_.firstSeen;
+    const bool outputs = asks && std::any_of(c.rays.begin(), c.rays.end(), [](auto& r) { return r.counts; });
     if (c.opaque && !outputs) {
         finish(c, sched);
     } else {

@@ -18,6 +18,9 @@ inline bool usesFootprint(const BoundLight& l) {
     return false;
 }
 
+/// Whether the light of an emitter depends on the size of its footprint.
+inline bool isWide(const BoundLight& l) { return l.kind == LightKind::Area && usesFootprint(l); }
+
 /// Sets du and dv of a point on an emitter, whose surface is known, for a ray from `from` that widens by `spread` per unit of
 /// length (spreadBehind()). `ray`: the ray that found `from`.
 inline void setEmitterFootprint(shading::ShadePoint& p, const shading::PathRay& ray, const Vec3& from, float spread) {

@@ -90,22 +90,6 @@ bool BlockVertices::samples(const Site& s, const BoundLight& light) {
     return (light.kind == LightKind::Area || light.isSky() || s.info->allLights) && light.strategy != LightStrategy::Illuminance;
 }
 
-/// Draws the random numbers of a stream (NumberBlock) at all points.
-void BlockVertices::drawNumbers(uint32_t stream, std::vector<render::NumberBlock>& to, bool ofLights) {
-    to.resize(blocks_);
-    for (size_t b = 0; b < blocks_; ++b) {
-        const VertexBlock& v = vertices_[b];
-        render::NumberBlock& n = to[b];
-        std::copy_n(v.low, kBlock, n.low);
-        std::copy_n(v.high, kBlock, n.high);
-        std::copy_n(v.index, kBlock, n.index);
-        std::copy_n(ofLights ? v.lightVertex : v.vertex, kBlock, n.vertex);
-        std::fill_n(n.stream, kBlock, stream);
-        std::fill_n(n.occurrence, kBlock, 0u);
-    }
-    render::drawBlocks(to);
-}
-
 /// Chooses a point on the light for a lit one. Returns false if the sample carries no light.
 bool BlockVertices::placeQuery(const BoundLight& light, const LightGuide* guide, const LightNumbers& u, const ShadePoint& lit,
                                ShadePoint& q, Emitter::Sample& s) const {

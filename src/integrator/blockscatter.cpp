@@ -35,16 +35,6 @@ static Lanes pickedOf(const ScatterBlock& s, int site) {
     return picked;
 }
 
-/// Sets the keys of the points; the stream is still to be set.
-void BlockVertices::beginNumbers(size_t b, render::NumberBlock& n) const {
-    const VertexBlock& v = vertices_[b];
-    std::copy_n(v.low, kBlock, n.low);
-    std::copy_n(v.high, kBlock, n.high);
-    std::copy_n(v.index, kBlock, n.index);
-    std::copy_n(v.vertex, kBlock, n.vertex);
-    std::fill_n(n.occurrence, kBlock, 0u);
-}
-
 /// Samples the directions of the picked lobes and evaluates the lobes there.
 void BlockVertices::drawDirections(size_t b) {
     size_t points[kBlock];

@@ -31,7 +31,6 @@ BlockVertices::BlockVertices(const StageSet& s)
       lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons),
       store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces), vertexLight_(s.vertexLight),
       stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
-    std::fill_n(whole_, kBlock, 1.f);
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
     const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
@@ -322,12 +321,6 @@ void BlockVertices::prepare() {
                 l.lights |= Lanes((l.asked & ~vertices_[b].guided) >> i & (l.lobe[kRowDelta][i] == 0)) << i;
         }
     }
-}
-
-std::span<LobeBlock*> BlockVertices::lobesOf(size_t b) {
-    block_.clear();
-    for (size_t k = 0; k < count_; ++k) block_.push_back(&sites_[k].lobes[b]);
-    return block_;
 }
 
 bool BlockVertices::select(const BatchContext& c) {

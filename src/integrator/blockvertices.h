@@ -3,17 +3,14 @@
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/batchcontext.h"
-#include "integrator/blocklobes.h"
 #include "integrator/context.h"
-#include "integrator/lastskies.h"
-#include "integrator/raywords.h"
 #include "integrator/stageset.h"
+#include "integrator/vertexblocks.h"
 #include "lanes/stages.h"
-#include <map>
 
 namespace alpenglow::integrator {
 
-class BlockVertices final : Stage {
+class BlockVertices final : Stage, VertexBlocks {
 public:
     static constexpr size_t kMostSites = 32; ///< most requesting call sites of a kernel
     explicit BlockVertices(const StageSet&);
@@ -40,10 +37,9 @@ public:
     bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
 
 private:
-    class CallCount;         ///< blockvertices.cpp
-    class ChosenLights;      ///< chosenlights.h
-    class Guided;            ///< blockguide.h
-    using Site = BlockLobes; ///< a call site of the kernel
+    class CallCount;    ///< blockvertices.cpp
+    class ChosenLights; ///< chosenlights.h
+    class Guided;       ///< blockguide.h
     // blockvertices.cpp
     static bool asksBlocks(const BatchContext&);
     bool follow(BatchContext&, Sched&, bool waits);
@@ -60,7 +56,6 @@ private:
     void countCalls(Site&, const EmitRecord&, const BatchContext&, std::vector<uint32_t>& before);
     void prepare();
     bool select(const BatchContext&);
-    std::span<LobeBlock*> lobesOf(size_t block);
     // blocklights.cpp
     void light(BatchContext&);
     void findLit(const BoundLight*);
@@ -71,7 +66,6 @@ private:
     void sampleLight(const BoundLight&, BatchContext&);
     void lastSkies(BatchContext&); // blocklastskies.cpp
     void endLobe(const Site&, size_t block, const BatchContext&);
-    void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true);
     bool placeQuery(const BoundLight&, const LightGuide*, const struct LightNumbers&, const ShadePoint& lit, ShadePoint& query,
                     Emitter::Sample&) const;
     static void takeValue(LightBlock&, int lane, const BoundLight&, const LightValue&, const ShadePoint& query,
@@ -107,7 +101,6 @@ private:
     void takeParts(const BoundLight&, const BatchContext&);
     void beginExits(const BatchContext&); // blockexits.cpp
     void walkBelow(size_t block, BatchContext&);
-    float indirectOf(size_t point) const { return indirect_.empty() ? 1 : indirect_[point]; }
     // blockalbedo.cpp
     static bool albedoIsMeasured(const Site&);
     void showAlbedo(BatchContext&);
@@ -115,7 +108,6 @@ private:
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
     void drawDirections(size_t block);
-    void beginNumbers(size_t block, render::NumberBlock&) const;
     void throwDice(size_t block);
     void sendRays(size_t block, BatchContext&, Sched&);
     void turnRays(size_t block, BatchContext&);
@@ -139,38 +131,11 @@ private:
     LobeLanesList lanes_;
     bool usable_ = false; ///< the world and the settings allow blocks
     Roulette roulette_ = Roulette::None;
-    size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: requesting sites in sites_
-    bool waits_ = false;                         ///< the kernel waits for its results
-    std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
-    std::span<const float> indirect_;            ///< runExits()
-    std::vector<VertexBlock> vertices_;
-    std::vector<RayBlock> rays_;                 ///< incoming rays, then the next rays
-    std::vector<Site> sites_;                    ///< the first `count_`, in the order of the calls
-    std::vector<LobeBlock*> block_;              ///< lobesOf()
-    std::map<int, std::vector<uint32_t>> loops_; ///< countCalls(): by call site that is called several times at a point
-    std::vector<Lanes> lit_;                     ///< by block: points that sample lights
-    int onlySite_ = -1;                          ///< lightWide(): the only site that samples the light; -1: all
-    std::vector<LightBlock> lights_;
-    std::vector<LastRay> ends_;
-    std::vector<render::NumberBlock> pairs_, choices_;
-    std::vector<ShadePoint> queries_;
-    std::vector<BlockQuery> asked_;
-    std::vector<LightValue> values_;
-    std::vector<int32_t> queryAt_;    ///< by point: index in values_; -1, or empty: lights_ holds all
-    std::vector<size_t> litBlocks_;   ///< blocks with points that sample lights
-    std::vector<float> lamp_;         ///< LightRows of these blocks
-    std::vector<BlockPlaced> placed_; ///< by litBlocks_
     std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
-    ScatterBlock next_{};
-    ShadowBlock shadow_{};
-    int32_t sent_[kBlock];     ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
-    std::vector<char> inRows_; ///< by light: can be sampled without points
-    std::vector<char> plain_;  ///< by light list: blocks support all lights
+    std::vector<char> inRows_;                                              ///< by light: can be sampled without points
+    std::vector<char> plain_;                                               ///< by light list: blocks support all lights
     std::unique_ptr<ChosenLights> chosen_;
     std::unique_ptr<Guided> guided_;
-    alignas(64) Row whole_; ///< all ones
-    alignas(64) float value_[kValueRows][kBlock] = {};
-    alignas(64) float drawn_[kDrawnRows][kBlock] = {};
 };
 
 } // namespace alpenglow::integrator

@@ -1,15 +1,19 @@
-// The light transport engine: a frame prepared for rendering (World), and the light along camera rays (Integrator). Under
-// "hidden" and "raytrace" shaders keep their classic RenderMan semantics; under "path" all light reaches their lobes
+// All that other rooms use of light transport: the light along camera rays (Integrator), emission of photons (PhotonEmission),
+// and what is learned of lights before the first sample. All of it is constructed from a frame prepared for rendering (World).
+// Under "hidden" and "raytrace" shaders keep their classic RenderMan semantics; under "path" all light reaches their lobes
 // (docs/design/light-transport.md).
 #pragma once
 #include "base/diagnostics.h"
+#include "base/stopflag.h"
 #include "geometry/plane.h"
 #include "integrator/samples.h"
 #include "scene/fwd.h"
 #include "scene/primitive.h"
+#include "world/storedphoton.h"
 #include "world/world.h"
 #include <memory>
 #include <span>
+#include <vector>
 
 namespace alpenglow::integrator {
 
@@ -34,5 +38,67 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// Purpose of an emission.
+struct PhotonUse {
+    bool all = true;       ///< if no light sets "emitphotons", all lights emit
+    bool sky = true;       ///< environments emit, too
+    bool caustics = false; ///< stores caustic photons only
+    float width = 0;       ///< lobes with a smaller spread, in radians, count as mirrors
+    bool learns = false;   ///< for the caustic guide: shaders do not print or bake, and messages are dropped
+};
+
+/// Emits photons in one world, which must have been built for the hider path.
+class PhotonEmission {
+public:
+    PhotonEmission(std::shared_ptr<const World>, const PhotonUse&, Diagnostics&);
+    ~PhotonEmission();
+    bool lights() const;  ///< whether any light emits
+    bool moves() const;   ///< whether anything moves that photons may hit or leave
+    double power() const; ///< total luminance, approximate
+    /// Adapts emission to the stored photons of a pass of `emitted` photons: later passes send more where these went. Call while
+    /// no thread emits.
+    void learn(std::span<const StoredPhoton>, uint32_t pass, uint32_t emitted);
+    /// Marks the lights that emit here as those whose light the photon passes carry.
+    void tellLights() const;
+
+    /// The emitter of one thread.
+    class Thread {
+    public:
+        Thread(const PhotonEmission&, Diagnostics&);
+        ~Thread();
+        /// Emits photons `first` to first + count - 1 of a pass of `emitted` photons and appends the stored ones to `out`, in the
+        /// order of their numbers. Returns false if stopped; `out` is then undefined.
+        bool emit(uint32_t pass, uint32_t first, uint32_t count, double emitted, std::vector<StoredPhoton>& out,
+                  const StopFlag* stop);
+        const Counters& counters() const;
+        /// Distance that lights, and surfaces hit by its photons, move while the shutter is open.
+        float travel() const;
+
+    private:
+        struct Impl;
+        std::unique_ptr<Impl> impl_;
+    };
+
+private:
+    struct Impl;
+    std::unique_ptr<Impl> impl_;
+};
+
+/// Size of the light guides of a world.
+struct LightGuideFigures {
+    uint64_t samples = 0;         ///< light samples that were seen unoccluded
+    uint64_t lights = 0;          ///< that have a guide
+    uint64_t cells = 0, used = 0; ///< used: where light samples follow the guide
+};
+/// Removes the guides of a world.
+void forgetLights(const World&);
+/// Whether a light of this world may have a guide: a flat emitter, or a sky that is sampled. Lights that vertices choose at
+/// random among many have none.
+bool mayGuideLights(const World&);
+/// Traces these paths and builds guides where a guide makes light samples less noisy; other paths use them from now on. Call
+/// while no thread traces. Returns false if `stop` was set; the guides are then as before.
+bool learnLights(const std::shared_ptr<const World>&, std::span<const CameraRay>, Diagnostics&, const StopFlag* stop,
+                 LightGuideFigures&);
 
 } // namespace alpenglow::integrator

@@ -1,8 +1,9 @@
-#include "integrator/learnlights.h"
-#include "integrator/deferred.h"
+// Learns guides for light samples (world/lightguide.h) from the light samples of some paths that are not those of the picture.
+#include "integrator/integrator.h"
 #include "integrator/pipeline.h"
 #include "integrator/shadowrays.h"
 #include "world/lightguide.h"
+#include "world/procedurals.h"
 #include <algorithm>
 
 namespace alpenglow::integrator {

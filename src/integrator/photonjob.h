@@ -1,7 +1,7 @@
 // Photon emission: the distribution over lights (EmissionPlan), parameters of one emission (PhotonJob), and the stored photons.
 #pragma once
 #include "integrator/batchcontext.h"
-#include "integrator/storedphoton.h"
+#include "world/storedphoton.h"
 
 namespace alpenglow::integrator {
 

@@ -1,9 +1,10 @@
 #include "render/guidepass.h"
-#include "integrator/learnlights.h"
+#include "integrator/integrator.h"
 #include "photonmap/limits.h"
 #include "render/filtersampler.h"
 #include "render/photonpass.h"
 #include "scene/scene.h"
+#include "world/photonmaps.h"
 #include <algorithm>
 
 namespace alpenglow::render {
@@ -56,12 +57,12 @@ float brightnessOf(Job& job) {
 
 bool learnCaustics(Job& job) {
     const scene::Options& o = job.world->frame().options;
-    if (refused(o) || !job.world->photons() || !integrator::mayHaveCaustics(*job.world)) return true;
+    if (refused(o) || !job.world->photons() || !world::mayHaveCaustics(*job.world)) return true;
     Diagnostics silent;
     PhotonPasses passes(job, job.world, {true, false, true, 0, true}, silent);
     if (!passes.emission().lights()) return true;
-    std::vector<integrator::StoredPhoton> found;
-    const auto take = [&](uint32_t, std::vector<integrator::StoredPhoton> stored) { found = std::move(stored); };
+    std::vector<world::StoredPhoton> found;
+    const auto take = [&](uint32_t, std::vector<world::StoredPhoton> stored) { found = std::move(stored); };
     // Few enough to cost nothing in small pictures. For the complete picture, so that a crop equals that part of the picture.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
     const auto pilot = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 14)));
@@ -70,15 +71,15 @@ bool learnCaustics(Job& job) {
     passes.emission().learn(found, kGuidePilot, pilot);
     const auto photons = uint32_t(std::clamp(pixels, double(1u << 13), double(1u << 17)));
     // For emitters that are not flat, emission is inefficient: sends more.
-    std::vector<integrator::StoredPhoton> all;
+    std::vector<world::StoredPhoton> all;
     uint32_t turns = 0;
     do {
         if (!passes.emit(kLearned - turns, 1, photons, limits::kPhotonsAtRest, take)) return false;
         all.insert(all.end(), found.begin(), found.end());
     } while (++turns < kMostTurns && double(all.size()) < pixels / 8);
-    for (integrator::StoredPhoton& s : all) s.photon.power /= float(turns);
+    for (world::StoredPhoton& s : all) s.photon.power /= float(turns);
     const float brightness = brightnessOf(job);
-    job.guide = integrator::guideCaustics(*job.world, all, passes.emission().power(), brightness);
+    job.guide = world::guideCaustics(*job.world, all, passes.emission().power(), brightness);
     job.world->flushPrints(false);
     return !job.pollStop();
 }

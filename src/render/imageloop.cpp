@@ -1,14 +1,14 @@
 // `hidden` and `raytrace`: PixelSamples image samples a pixel, reconstructed by each display's own filter, in bands of rows.
 #include "base/limits.h"
 #include "base/sampler.h"
-#include "integrator/deferred.h"
-#include "integrator/depths.h"
 #include "render/growth.h"
 #include "render/imaging.h"
 #include "render/noise.h"
 #include "render/rendering.h"
 #include "render/watcher.h"
 #include "scene/scene.h"
+#include "world/depths.h"
+#include "world/procedurals.h"
 #include <algorithm>
 #include <cmath>
 #include <mutex>
@@ -103,7 +103,7 @@ ImageLoop::ImageLoop(Job& job, int nx, int ny, Jitter jitter, const Refinement& 
     // With motion, surfaces are shaded at shutter open, but rays hit them at other depths.
     const bool still = job.camera.shutterClose() <= job.camera.shutterOpen();
     const bool ofDepth = depthsAlone_ || job.plan.needsDepth(DepthFilter::Midpoint);
-    behindUnshaded_ = ofDepth && still && job.world && integrator::depthsNeedNoShaders(*job.world);
+    behindUnshaded_ = ofDepth && still && job.world && world::depthsNeedNoShaders(*job.world);
     unshaded_ = depthsAlone_ && behindUnshaded_;
 }
 
@@ -188,13 +188,13 @@ Window ImageLoop::beginBand(const Window& part) {
 
 void ImageLoop::band(int b) {
     const Window part{window_.x0, rowOf(b), window_.x1, rowOf(b + 1)};
-    if (job_.world && integrator::hasDeferred(*job_.world)) job_.world->flushPrints(true); // of samples that are not traced again
+    if (job_.world && world::hasDeferred(*job_.world)) job_.world->flushPrints(true); // of samples that are not traced again
     const Window fresh = beginBand(part);
     SampleBuffer& buffer = *buffer_;
     const std::vector<Window> tiles = tilesOf(fresh);
     const int first = refinement_.on() ? nx_ * ny_ / 2 : 0, last = refinement_.on() ? first + 1 : nx_ * ny_;
     // Tasks that may be repeated after expansion are not complete while others run.
-    const bool watched = job_.settings.watcher && !(job_.world && integrator::hasDeferred(*job_.world));
+    const bool watched = job_.settings.watcher && !(job_.world && world::hasDeferred(*job_.world));
     if (watched) growth_.emplace(buffer, part, kTile);
     const uint64_t dropped = buffer.nonFinite();
     trace(
@@ -342,10 +342,9 @@ bool ImageLoop::traceSlice(SampleBuffer& buffer, int worker, std::span<const Wan
 
 void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
     const std::vector<Wanted> pixels = differing(buffer, part);
-    constexpr size_t kPixels = 64; // in a task
-    if (job_.world && integrator::hasDeferred(*job_.world))
-        job_.world->flushPrints(true); // existing samples are not traced again
-    if (growth_) {                     // everything so far, while no worker is active
+    constexpr size_t kPixels = 64;                                                    // in a task
+    if (job_.world && world::hasDeferred(*job_.world)) job_.world->flushPrints(true); // existing samples are not traced again
+    if (growth_) { // everything so far, while no worker is active
         reconstruct(buffer, part);
         std::vector<std::pair<int, int>> places;
         for (const Wanted& w : pixels) places.push_back({w.x, w.y});

@@ -4,6 +4,7 @@
 #include "photonmap/photonmap.h"
 #include "render/guidepass.h"
 #include "scene/scene.h"
+#include "world/photonmaps.h"
 #include <algorithm>
 #include <utility>
 
@@ -26,14 +27,14 @@ const scene::Param* hiderParam(const scene::Options& o, const char* name) {
 }
 
 /// Reduces photons to about `most` at random; the remaining ones carry the light of all.
-void thin(std::vector<integrator::StoredPhoton>& stored, size_t most, uint32_t pass) {
+void thin(std::vector<world::StoredPhoton>& stored, size_t most, uint32_t pass) {
     if (stored.size() <= most) return;
     const double part = double(most) / double(stored.size());
-    std::erase_if(stored, [&](const integrator::StoredPhoton& s) {
+    std::erase_if(stored, [&](const world::StoredPhoton& s) {
         const uint64_t key = mix64(uint64_t(pass) << 32 | s.number) + s.photon.bounces;
         return double(mix64(key) >> 11) * 0x1p-53 >= part;
     });
-    for (integrator::StoredPhoton& s : stored) s.photon.power /= float(part);
+    for (world::StoredPhoton& s : stored) s.photon.power /= float(part);
 }
 
 } // namespace
@@ -69,7 +70,7 @@ integrator::PhotonEmission::Thread& PhotonPasses::thread(int worker) {
     return *t;
 }
 
-bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<integrator::StoredPhoton>& stored, const std::string& what,
+bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<world::StoredPhoton>& stored, const std::string& what,
                         uint64_t* emitted) {
     const uint64_t blocks = (count + kBlock - 1) / kBlock;
     uint64_t done = 0;
@@ -83,7 +84,7 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<integrator::S
     bool whole = true;
     for (; done < blocks && whole && !job_.pollStop(); done += kBlocksAtOnce) {
         const uint64_t now = std::min(kBlocksAtOnce, blocks - done);
-        std::vector<std::vector<integrator::StoredPhoton>> of(now);
+        std::vector<std::vector<world::StoredPhoton>> of(now);
         whole = job_.team.run(
             now, &job_.halt,
             [&](int worker, size_t i) {
@@ -111,13 +112,13 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<integrator::S
     job_.progress.clear();
     if (!whole || job_.interrupted) return false;
     *emitted = std::min(done * kBlock, count);
-    for (integrator::StoredPhoton& s : stored) s.photon.power /= float(*emitted);
+    for (world::StoredPhoton& s : stored) s.photon.power /= float(*emitted);
     return true;
 }
 
 /// Emits blocks begin to end - 1, counted over all passes from `first` on; returns the stored photons by block.
 bool PhotonPasses::emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end,
-                              std::vector<std::vector<integrator::StoredPhoton>>& of) {
+                              std::vector<std::vector<world::StoredPhoton>>& of) {
     const size_t blocks = (count + kBlock - 1) / kBlock;
     of.assign(end - begin, {});
     return job_.team.run(
@@ -131,15 +132,15 @@ bool PhotonPasses::emitBlocks(uint32_t first, uint32_t count, size_t begin, size
 }
 
 bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t most,
-                        const std::function<void(uint32_t, std::vector<integrator::StoredPhoton>)>& take) {
+                        const std::function<void(uint32_t, std::vector<world::StoredPhoton>)>& take) {
     const size_t blocks = (count + kBlock - 1) / kBlock;
     // Combines small passes, so that all threads have work, and divides large ones. The division depends on nothing else, so a
     // pass is independent of what is emitted with it.
     const size_t together = std::max<size_t>(1, kBlocksOfPasses / blocks);
-    std::vector<std::vector<integrator::StoredPhoton>> of;
+    std::vector<std::vector<world::StoredPhoton>> of;
     for (uint32_t pass = 0; pass < passes; pass += uint32_t(together)) {
         const size_t now = std::min<size_t>(together, passes - pass);
-        std::vector<integrator::StoredPhoton> stored;
+        std::vector<world::StoredPhoton> stored;
         for (size_t done = 0; done < blocks * now;) {
             const size_t end = now > 1 || blocks <= kBlocksOfPasses ? blocks * now : std::min(done + kBlocksOfPasses, blocks);
             if (!emitBlocks(first + pass, count, done, end, of)) return false;
@@ -154,7 +155,7 @@ bool PhotonPasses::emit(uint32_t first, uint32_t passes, uint32_t count, size_t 
             done = end;
             if (stored.size() <= most || done >= blocks) continue;
             const uint32_t emitted = uint32_t(done) * kBlock;
-            for (integrator::StoredPhoton& s : stored) s.photon.power *= float(count) / float(emitted);
+            for (world::StoredPhoton& s : stored) s.photon.power *= float(count) / float(emitted);
             diagnostics_.reportOnce("photonsatrest",
                                     {Severity::Warning,
                                      Rie::Limit,
@@ -202,15 +203,15 @@ bool CausticPasses::begin() {
     }
     auto passes = std::make_unique<PhotonPasses>(job_, job_.world, integrator::PhotonUse{true, false, true, widthOf(o)});
     if (!passes->emission().lights()) return true;
-    std::vector<integrator::StoredPhoton> found;
-    const auto take = [&](uint32_t, std::vector<integrator::StoredPhoton> stored) { found = std::move(stored); };
+    std::vector<world::StoredPhoton> found;
+    const auto take = [&](uint32_t, std::vector<world::StoredPhoton> stored) { found = std::move(stored); };
     const uint32_t pilot = std::clamp(count_ * 4, 1u << 14, 1u << 17);
     if (!passes->emit(kPilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
     if (found.empty()) return true; // then paths sample what there is
     passes->emission().learn(found, kPilot, pilot);
     if (!passes->emit(0, 1, count_, limits::kPhotonsAtRest, take)) return false;
     std::vector<photonmap::Photon> some;
-    for (const integrator::StoredPhoton& s : found) some.push_back(s.photon);
+    for (const world::StoredPhoton& s : found) some.push_back(s.photon);
     found = {};
     radius_ = photonmap::typicalDistance(photonmap::PhotonMap(std::move(some)), kTypical, 128);
     if (!(radius_ > 0)) return true;
@@ -238,20 +239,20 @@ bool CausticPasses::ready(uint32_t first, uint32_t count) {
     if (!prepare()) return false;
     if (!passes_) return true;
     std::vector<std::unique_ptr<photonmap::PhotonGrid>> grids(count);
-    const auto take = [&](uint32_t pass, std::vector<integrator::StoredPhoton> stored) {
+    const auto take = [&](uint32_t pass, std::vector<world::StoredPhoton> stored) {
         std::vector<photonmap::Photon> all;
         std::vector<float> times;
         all.reserve(stored.size());
-        for (const integrator::StoredPhoton& s : stored) all.push_back(s.photon);
+        for (const world::StoredPhoton& s : stored) all.push_back(s.photon);
         if (moves_)
-            for (const integrator::StoredPhoton& s : stored) times.push_back(s.time);
+            for (const world::StoredPhoton& s : stored) times.push_back(s.time);
         stored = {};
         const float radius = photonmap::radiusOfPass(radius_, first + pass);
         grids[pass] = std::make_unique<photonmap::PhotonGrid>(std::move(all), radius, times, window_ * (radius / radius_));
     };
-    integrator::setPhotonPasses(*job_.world, first, {}); // photons of earlier samples are freed first
+    world::setPhotonPasses(*job_.world, first, {}); // photons of earlier samples are freed first
     if (!passes_->emit(first, count, count_, limits::kPhotonsAtRest, take)) return false;
-    integrator::setPhotonPasses(*job_.world, first, std::move(grids));
+    world::setPhotonPasses(*job_.world, first, std::move(grids));
     return true;
 }
 

@@ -1,6 +1,6 @@
 // Photon passes of a frame: maps to write or for its shaders, and caustics under path. Internal to render/.
 #pragma once
-#include "integrator/photons.h"
+#include "integrator/integrator.h"
 #include "render/rendering.h"
 #include <functional>
 
@@ -15,19 +15,18 @@ public:
     integrator::PhotonEmission& emission() { return emission_; }
     /// Emits `count` photons of a pass and collects the stored ones. Returns false if stopped, or if more than limits::kPhotons
     /// were stored, which is reported; *emitted is then the number of photons emitted for these.
-    bool emit(uint32_t pass, uint64_t count, std::vector<integrator::StoredPhoton>& stored, const std::string& what,
+    bool emit(uint32_t pass, uint64_t count, std::vector<world::StoredPhoton>& stored, const std::string& what,
               uint64_t* emitted);
     /// Emits passes first to first + passes - 1 independently: take(pass, stored) receives the stored photons of `count` emitted
     /// ones, pass by pass. A pass ends when more than `most` are stored, which is reported once; these then carry the light of
     /// all. Returns false if stopped.
     bool emit(uint32_t first, uint32_t passes, uint32_t count, size_t most,
-              const std::function<void(uint32_t pass, std::vector<integrator::StoredPhoton>)>& take);
+              const std::function<void(uint32_t pass, std::vector<world::StoredPhoton>)>& take);
     /// Distance that lights, and surfaces hit by photons so far, move while the shutter is open.
     float travel() const;
 
 private:
-    bool emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end,
-                    std::vector<std::vector<integrator::StoredPhoton>>& of);
+    bool emitBlocks(uint32_t first, uint32_t count, size_t begin, size_t end, std::vector<std::vector<world::StoredPhoton>>& of);
     integrator::PhotonEmission::Thread& thread(int worker);
     Job& job_;
     Diagnostics& diagnostics_;

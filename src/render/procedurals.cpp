@@ -1,5 +1,5 @@
 // Deferred procedurals: expands those that a frame needs from the start, and builds worlds with those that rays reached.
-#include "integrator/deferred.h"
+#include "world/procedurals.h"
 #include "render/framework.h"
 #include "render/lacks.h"
 #include "render/levels.h"
@@ -22,7 +22,7 @@ bool Renderer::buildFrame(FrameWork& f) {
     const auto build = [&] { return engine_.build(drawnLevels(f.made, f.camera), f.settings, diagnostics_); };
     f.settings = engineSettings(f);
     f.world = build();
-    if (f.world && makeProcedurals_ && integrator::hasDeferred(*f.world) && integrator::needsAllShapes(*f.world)) {
+    if (f.world && makeProcedurals_ && world::hasDeferred(*f.world) && world::needsAllShapes(*f.world)) {
         makeAll(f);
         f.world.reset();
         f.world = build();

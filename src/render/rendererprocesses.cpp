@@ -1,12 +1,12 @@
 // The renderer's part in frames rendered by processes (frameprocesses.h): what they receive and return.
 #include "base/realpath.h"
 #include "display/driver.h"
-#include "integrator/bakes.h"
-#include "integrator/deferred.h"
 #include "render/frameprocesses.h"
 #include "render/framework.h"
 #include "render/heap.h"
 #include "shadeops/bitcode.h"
+#include "world/bakes.h"
+#include "world/procedurals.h"
 #include <algorithm>
 #include <tbb/cache_aligned_allocator.h>
 #include <utility>
@@ -89,7 +89,7 @@ void Renderer::beforeRead(const std::string& name) {
 
 void Renderer::declareBakes(const FrameWork& f) {
     // A procedural expanded later may contain shaders that bake.
-    if (inProcess()) processes_->declare(integrator::bakes(*f.world) || integrator::hasDeferred(*f.world));
+    if (inProcess()) processes_->declare(world::bakes(*f.world) || world::hasDeferred(*f.world));
 }
 
 void Renderer::awaitTurn() {

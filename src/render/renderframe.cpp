@@ -3,7 +3,6 @@
 #include "base/processors.h"
 #include "base/realpath.h"
 #include "display/driver.h"
-#include "integrator/bakes.h"
 #include "render/bakepass.h"
 #include "render/curve.h"
 #include "render/deeppass.h"
@@ -19,6 +18,7 @@
 #include "render/provenance.h"
 #include "render/rendering.h"
 #include "render/watcher.h"
+#include "world/bakes.h"
 #include <cmath>
 #include <tbb/global_control.h>
 
@@ -412,7 +412,7 @@ bool Renderer::renderGrid(FrameWork& f, Job& job) {
 
 /// Writes the files of bake() and bake3d(), unless the frame was interrupted.
 void Renderer::writeBaked(FrameWork& f, const Job& job) {
-    if (!integrator::bakes(*f.world)) return;
+    if (!world::bakes(*f.world)) return;
     if (job.interrupted)
         return diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: baked files are not written");
     awaitTurn();
@@ -423,7 +423,7 @@ void Renderer::writeBaked(FrameWork& f, const Job& job) {
         others[fileIdentity(s.name)] =
             s.place.line > 0 ? "the Display of " + s.place.file + ":" + std::to_string(s.place.line) : "the picture";
     }
-    outcome_.outputFailed |= !integrator::writeBakes(*f.world, settings_.allowWrite, others, diagnostics_);
+    outcome_.outputFailed |= !world::writeBakes(*f.world, settings_.allowWrite, others, diagnostics_);
 }
 
 void Renderer::takeFigures(const FrameWork& f, Job& job) {

@@ -1,5 +1,5 @@
 #include "render/rendering.h"
-#include "integrator/deferred.h"
+#include "world/procedurals.h"
 #include <algorithm>
 #include <chrono>
 #include <numeric>
@@ -33,7 +33,7 @@ bool Job::run(size_t count, const std::function<void(int, size_t)>& work, const 
         };
         if (!team.run(left.size(), &halt, task, [&](size_t done) { tick(before + done); })) return false;
         if (std::find(again.begin(), again.end(), 1) == again.end()) return true;
-        if (!integrator::hasPrints(*world)) { // otherwise prints could not be assigned to a world
+        if (!world::hasPrints(*world)) { // otherwise prints could not be assigned to a world
             size_t kept = 0;
             for (size_t i = 0; i < left.size(); ++i)
                 if (again[i]) left[kept++] = left[i];
@@ -48,15 +48,15 @@ bool Job::run(size_t count, const std::function<void(int, size_t)>& work, const 
 }
 
 bool Job::makeMet() {
-    const std::vector<int> numbers = integrator::procedurals(*world);
+    const std::vector<int> numbers = world::procedurals(*world);
     std::shared_ptr<const world::World> next = make && !numbers.empty() ? make(numbers) : nullptr;
     if (!next) {
         if (!pollStop()) throw std::runtime_error("procedurals that rays reached cannot be expanded");
         return false;
     }
-    integrator::takeOver(*next, *world);
+    world::takeOver(*next, *world);
     // Nearest first; then twice as many each round, so that a long row of procedurals needs few rounds.
-    integrator::askForProcedurals(*next, 1 << std::min(++rounds_, 20));
+    world::askForProcedurals(*next, 1 << std::min(++rounds_, 20));
     earlier_ = counters();
     world = std::move(next);
     begin();

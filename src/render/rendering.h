@@ -1,8 +1,7 @@
 // The two loops that turn camera rays into pixels, and their shared parts. Internal to render/.
 #pragma once
 #include "base/numberlanes.h"
-#include "integrator/learnlights.h"
-#include "integrator/photons.h"
+#include "integrator/integrator.h"
 #include "render/camera.h"
 #include "render/engine.h"
 #include "render/filtersampler.h"
@@ -11,6 +10,7 @@
 #include "render/progress.h"
 #include "render/settings.h"
 #include "render/team.h"
+#include "world/photonmaps.h"
 #include <array>
 #include <atomic>
 #include <functional>
@@ -49,12 +49,12 @@ struct Job {
     std::vector<uint64_t> rays;                   ///< by worker, at the last report
     std::atomic<uint64_t> rayTotal{0};
     integrator::LightGuideFigures lightGuide;   ///< of path
-    integrator::GuideFigures guide;             ///< of path
+    world::GuideFigures guide;                  ///< of path
     std::atomic<bool> met{false}, shone{false}; ///< some camera ray hit a surface; carried light
 
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const world::World>, int threads,
         Progress&, Diagnostics&);
-    /// Builds the world with procedurals that rays reached (integrator/deferred.h), by number; returns null if the user stops, or
+    /// Builds the world with procedurals that rays reached (world/procedurals.h), by number; returns null if the user stops, or
     /// after an error (reported). Unset: no deferred procedurals.
     std::function<std::shared_ptr<const world::World>(std::span<const int>)> make;
     /// Runs tasks 0 to count - 1 like Team::run(). Tasks whose rays reached deferred procedurals are repeated after expansion, so

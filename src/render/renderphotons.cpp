@@ -2,6 +2,7 @@
 #include "render/framework.h"
 #include "render/levels.h"
 #include "render/photonpass.h"
+#include "world/photonmaps.h"
 
 namespace alpenglow::render {
 
@@ -18,7 +19,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
         ++outcome_.refused;
         return;
     }
-    const std::vector<std::string> maps = integrator::photonMapsOf(*f.world, true);
+    const std::vector<std::string> maps = world::photonMapsOf(*f.world, true);
     if (maps.empty())
         return refuse("Hider \"photon\": no surface and no shader of the frame names a photon map",
                       "Attribute \"photon\" \"string globalmap\" \"room.photons\"");
@@ -29,7 +30,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     if (!passes.emission().lights())
         return refuse("Hider \"photon\": no light of the frame emits photons",
                       "ambient lights and lights without a position emit none");
-    std::vector<integrator::StoredPhoton> stored;
+    std::vector<world::StoredPhoton> stored;
     uint64_t emitted = 0;
     const bool whole = passes.emit(0, photonsToEmit(f.o, diagnostics_), stored, maps.front(), &emitted);
     noteInterrupted(job);
@@ -44,11 +45,11 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
     }
     ++outcome_.rendered;
     awaitTurn();
-    for (const auto& [name, photons] : integrator::photonsByMap(*f.world, maps, stored)) {
+    for (const auto& [name, photons] : world::photonsByMap(*f.world, maps, stored)) {
         if (photons.empty())
             diagnostics_.report(Severity::Warning, Rie::NoError, {},
                                 "photon map \"" + name + "\" is empty: no photon was stored on its surfaces");
-        const bool saved = integrator::savePhotonMap(*f.world, name, photons, emitted, settings_.allowWrite, diagnostics_);
+        const bool saved = world::savePhotonMap(*f.world, name, photons, emitted, settings_.allowWrite, diagnostics_);
         outcome_.outputFailed |= !saved;
         if (saved)
             diagnostics_.report(Severity::Info, Rie::NoError, {},
@@ -59,7 +60,7 @@ void Renderer::renderPhotons(FrameWork& f, int threads) {
 
 void Renderer::makePhotonMaps(FrameWork& f, Job& job) {
     if (!f.world->photons()) return;
-    const std::vector<std::string> maps = integrator::photonMapsOf(*f.world, false);
+    const std::vector<std::string> maps = world::photonMapsOf(*f.world, false);
     if (maps.empty()) return;
     // Under path shaders request lobes; under the other hiders they evaluate lights themselves.
     Diagnostics silent; // its messages were reported when the frame was built
@@ -72,11 +73,11 @@ void Renderer::makePhotonMaps(FrameWork& f, Job& job) {
     }
     PhotonPasses passes(job, world, {.all = false});
     if (!passes.emission().lights()) return; // lookups report a missing map
-    std::vector<integrator::StoredPhoton> stored;
+    std::vector<world::StoredPhoton> stored;
     uint64_t emitted = 0;
     if (!passes.emit(0, photonsToEmit(f.path ? scene::Options(f.o) : f.o, diagnostics_), stored, "photons", &emitted)) return;
-    for (auto& [name, photons] : integrator::photonsByMap(*world, maps, stored))
-        integrator::setPhotonMap(*f.world, name, std::move(photons));
+    for (auto& [name, photons] : world::photonsByMap(*world, maps, stored))
+        world::setPhotonMap(*f.world, name, std::move(photons));
 }
 
 } // namespace alpenglow::render

@@ -41,16 +41,16 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
      {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "bsdf", "lanes", "pointcloud", "photonmap",
       "ptex", "world", "services"}},
     {"render",
-     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "pointcloud", "photonmap", "integrator",
-      "display"}},
+     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "pointcloud", "photonmap", "world",
+      "integrator", "display"}},
     {"cli",
      {"base",      "scene", "geometry", "accel",    "rsl",        "shadeops", "texture", "shading", "bsdf", "lanes", "pointcloud",
       "photonmap", "ptex",  "world",    "services", "integrator", "display",  "render",  "ri",      "view", "models"}},
     {"capi", {"base", "scene", "display", "integrator", "render", "ri", "cli"}},
     {"python", {"base", "scene", "rsl", "world", "services", "display", "render", "ri", "cli"}},
     {"view",
-     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "pointcloud", "photonmap", "integrator",
-      "display", "render", "ri"}},
+     {"base", "scene", "geometry", "accel", "rsl", "shadeops", "texture", "shading", "pointcloud", "photonmap", "world",
+      "integrator", "display", "render", "ri"}},
 };
 
 // Header prefix -> the only folders that may include it.
@@ -131,6 +131,24 @@ TEST(Folders, NobodyChangesABuiltWorld) {
                 EXPECT_EQ(line.find("const_cast"), std::string::npos) << e.path() << ":" << n << " casts const away";
         }
     EXPECT_GT(files, 100);
+}
+
+// One header of at most 150 lines is all that others see of light transport.
+TEST(Folders, TheIntegratorHasOneDoor) {
+    const fs::path src = fs::path(ALPENGLOW_SOURCE_DIR) / "src";
+    int users = 0;
+    for (const auto& e : fs::recursive_directory_iterator(src)) {
+        const std::string relative = fs::relative(e.path(), src).string();
+        if (!e.is_regular_file() || relative.rfind("integrator/", 0) == 0) continue;
+        std::ifstream in(e.path());
+        std::string line;
+        for (int n = 1; std::getline(in, line); ++n) {
+            if (line.rfind("#include \"integrator/", 0) != 0) continue;
+            EXPECT_EQ(line, "#include \"integrator/integrator.h\"") << relative << ":" << n;
+            ++users;
+        }
+    }
+    EXPECT_GT(users, 4);
 }
 
 // The integrator is read first: each stage has a header of its own that one page shows, and nobody reaches inside of another.

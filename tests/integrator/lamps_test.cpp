@@ -4,7 +4,8 @@
 // (Lambert); a half ball seen from its open side is a disc, one seen from the other a ball (Howell). The large table runs with
 // ALPENGLOW_NIGHTLY.
 #include "integrator/floorscene.h"
-#include "integrator/photons.h"
+#include "integrator/integrator.h"
+#include "world/photonmaps.h"
 
 namespace lamps_test {
 

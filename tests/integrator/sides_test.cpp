@@ -1,7 +1,8 @@
 // Sides 1: a surface is not there for who looks at it from behind, in whatever way light is found: by rays, shadow rays, photons,
 // transmission(), in loops, and with traced shadows outside of path. A white floor with a sheet over it.
 #include "integrator/floorscene.h"
-#include "integrator/photons.h"
+#include "integrator/integrator.h"
+#include "world/photonmaps.h"
 
 namespace sides_test {
 

@@ -1,8 +1,9 @@
 // Hider "path" "caustics": photons bring what comes by way of mirrors and glass, paths bring the rest. Both together are the
 // light that paths alone find, and closed forms where there are some.
 #include "integrator/floorscene.h"
-#include "integrator/photons.h"
+#include "integrator/integrator.h"
 #include "photonmap/photonmap.h"
+#include "world/photonmaps.h"
 
 namespace caustics_test {
 

@@ -2,8 +2,9 @@
 // bits in any company.
 #include "bsdf/sampling.h"
 #include "integrator/floorscene.h"
-#include "integrator/photons.h"
+#include "integrator/integrator.h"
 #include "photonmap/photonmap.h"
+#include "world/photonmaps.h"
 #include <cstring>
 
 namespace emission_test {

@@ -1,7 +1,8 @@
 // The caustic guide: what it draws, and that paths have the same light with it, without it, and with one that is wrong.
 #include "integrator/floorscene.h"
-#include "integrator/photons.h"
+#include "integrator/integrator.h"
 #include "world/causticguide.h"
+#include "world/photonmaps.h"
 #include <random>
 
 namespace guide_test {

@@ -1,6 +1,6 @@
 // The light guide: what it draws, and that paths have the same light with it, without it, and with one that is wrong.
 #include "integrator/floorscene.h"
-#include "integrator/learnlights.h"
+#include "integrator/integrator.h"
 #include "world/impl.h"
 #include "world/lightguide.h"
 #include <random>

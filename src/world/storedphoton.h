@@ -1,9 +1,9 @@
 // The result of a photon emission.
 #pragma once
-#include "integrator/names.h"
 #include "photonmap/photon.h"
+#include "world/names.h"
 
-namespace alpenglow::integrator {
+namespace alpenglow::world {
 
 /// A stored photon.
 struct StoredPhoton {
@@ -15,4 +15,4 @@ struct StoredPhoton {
     bool caustic = false; ///< came by delta lobes only (mirrors, glass), at least one
 };
 
-} // namespace alpenglow::integrator
+} // namespace alpenglow::world

@@ -1,9 +1,9 @@
-#include "integrator/deferred.h"
-#include "integrator/bakes.h"
-#include "integrator/photons.h"
+#include "world/procedurals.h"
+#include "world/bakes.h"
 #include "world/impl.h"
+#include "world/photonmaps.h"
 
-namespace alpenglow::integrator {
+namespace alpenglow::world {
 namespace {
 /// Null for other implementations of World (tests), which have no procedurals.
 const WorldImpl* inside(const World& w) { return dynamic_cast<const WorldImpl*>(&w); }
@@ -25,4 +25,4 @@ void takeOver(const World& w, const World& before) {
 
 bool hasPrints(const World& w) { return inside(w) && inside(w)->prints_.pending(); }
 
-} // namespace alpenglow::integrator
+} // namespace alpenglow::world

@@ -1,11 +1,11 @@
-#include "integrator/bakes.h"
+#include "world/bakes.h"
 #include "scene/scene.h"
 #include "shading/grids.h"
 #include "world/cloudsite.h"
 #include "world/cloudstore.h"
 #include "world/impl.h"
 
-namespace alpenglow::integrator {
+namespace alpenglow::world {
 
 namespace {
 
@@ -21,11 +21,6 @@ bool bakesAt(const WorldImpl& w, const SurfaceBinding& b) {
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) bakes |= bakesAt(*k);
     if (!bakes) w.eachLight(b.lights, [&](int l) { return bakes |= bakesAt(w.lights_[size_t(l)].kernel); });
     return bakes;
-}
-
-Vec3 placeOf(const WorldImpl& w, const shading::GridPoint& p) {
-    const geometry::SurfacePoint at = w.shapes_[p.shape]->evaluateHit(p.prim, p.b1, p.b2);
-    return at.displaced ? at.displacedP : at.P;
 }
 
 } // namespace
@@ -94,27 +89,9 @@ void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPo
     to.resize(kept);
 }
 
-CameraRay rayTo(const World& world, shading::GridPoint& point, int number, const CameraRay& pixel) {
-    const WorldImpl& w = implOf(world);
-    CameraRay r = pixel;
-    const Vec3 at = placeOf(w, point);
-    r.width = std::max(0.f, pixel.width - pixel.spread * pixel.start);
-    r.start = 0;
-    const float l = length(at);
-    if (w.frame_->options.projection == "perspective") {
-        r.origin = Vec3(0.f);
-        r.direction = l > 0 ? at / l : Vec3(0, 0, 1);
-        point.distance = l;
-    } else {
-        r.origin = Vec3(at.x, at.y, std::min(0.f, at.z - 1));
-        r.direction = Vec3(0, 0, 1);
-        point.distance = at.z - r.origin.z;
-    }
-    r.cosine = r.direction.z;
-    r.py = int(point.shape);
-    r.px = number;
-    r.grid = &point;
-    return r;
+Vec3 placeOf(const World& world, const shading::GridPoint& p) {
+    const geometry::SurfacePoint at = implOf(world).shapes_[p.shape]->evaluateHit(p.prim, p.b1, p.b2);
+    return at.displaced ? at.displacedP : at.P;
 }
 
 bool bakedNow(const World& world) { return implOf(world).clouds_->baked.pending(); }
@@ -128,4 +105,4 @@ bool writeBakes(const World& world, bool allowWrite, const pointcloud::FileOwner
     return implOf(world).clouds_->baked.write({".", allowWrite}, d, others);
 }
 
-} // namespace alpenglow::integrator
+} // namespace alpenglow::world

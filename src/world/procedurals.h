@@ -1,10 +1,10 @@
 // Deferred procedurals, which are expanded when a ray reaches their bound (scene/deferred.h): interface of a world.
 #pragma once
-#include "integrator/names.h"
+#include "world/names.h"
 #include "world/world.h"
 #include <vector>
 
-namespace alpenglow::integrator {
+namespace alpenglow::world {
 
 /// Sets how many bounds along its way a ray records, at most (initially 1). Call before tracing.
 void askForProcedurals(const World&, int most);
@@ -20,4 +20,4 @@ void takeOver(const World&, const World& before);
 /// Whether shaders have printed output that is not yet written.
 bool hasPrints(const World&);
 
-} // namespace alpenglow::integrator
+} // namespace alpenglow::world

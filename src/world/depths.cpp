@@ -1,9 +1,9 @@
-#include "integrator/depths.h"
-#include "integrator/bakes.h"
-#include "integrator/deferred.h"
+#include "world/depths.h"
+#include "world/bakes.h"
 #include "world/impl.h"
+#include "world/procedurals.h"
 
-namespace alpenglow::integrator {
+namespace alpenglow::world {
 namespace {
 
 bool tells(const BoundKernel& k) {
@@ -28,4 +28,4 @@ bool depthsNeedNoShaders(const World& world) {
     return true;
 }
 
-} // namespace alpenglow::integrator
+} // namespace alpenglow::world

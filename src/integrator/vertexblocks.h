@@ -1,0 +1,51 @@
+// The vertices of a batch in blocks of 16, and what the stages over them (blockvertices.h) hand on to each other.
+#pragma once
+#include "integrator/blocklobes.h"
+#include "integrator/lastskies.h"
+#include "integrator/raywords.h"
+#include "integrator/vertex.h"
+#include <map>
+
+namespace alpenglow::integrator {
+
+class VertexBlocks {
+protected:
+    using Site = BlockLobes; ///< a call site of the kernel
+    VertexBlocks();
+    std::span<LobeBlock*> lobesOf(size_t block);
+    float indirectOf(size_t point) const { return indirect_.empty() ? 1 : indirect_[point]; }
+    /// Sets the keys of the points of a block; the stream is still to be set.
+    void beginNumbers(size_t block, render::NumberBlock&) const;
+    /// Draws the random numbers of a stream (NumberBlock) at all points.
+    void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true) const;
+
+    size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: requesting sites in sites_
+    bool waits_ = false;                         ///< the kernel waits for its results
+    std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
+    std::span<const float> indirect_;            ///< at exits of walks, by point: factor of the light of rays
+    std::vector<VertexBlock> vertices_;
+    std::vector<RayBlock> rays_;                 ///< incoming rays, then the next rays
+    std::vector<Site> sites_;                    ///< the first `count_`, in the order of the calls
+    std::vector<LobeBlock*> block_;              ///< lobesOf()
+    std::map<int, std::vector<uint32_t>> loops_; ///< by call site that is called several times at a point: calls so far
+    std::vector<Lanes> lit_;                     ///< by block: points that sample lights
+    int onlySite_ = -1;                          ///< the only site that samples the light; -1: all
+    std::vector<LightBlock> lights_;
+    std::vector<LastRay> ends_;
+    std::vector<render::NumberBlock> pairs_, choices_;
+    std::vector<ShadePoint> queries_;
+    std::vector<BlockQuery> asked_;
+    std::vector<LightValue> values_;
+    std::vector<int32_t> queryAt_;    ///< by point: index in values_; -1, or empty: lights_ holds all
+    std::vector<size_t> litBlocks_;   ///< blocks with points that sample lights
+    std::vector<float> lamp_;         ///< LightRows of these blocks
+    std::vector<BlockPlaced> placed_; ///< by litBlocks_
+    ScatterBlock next_{};
+    ShadowBlock shadow_{};
+    int32_t sent_[kBlock];  ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
+    alignas(64) Row whole_; ///< all ones
+    alignas(64) float value_[kValueRows][kBlock] = {};
+    alignas(64) float drawn_[kDrawnRows][kBlock] = {};
+};
+
+} // namespace alpenglow::integrator

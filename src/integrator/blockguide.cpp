@@ -25,6 +25,7 @@ BlockVertices::Guided::Point BlockVertices::Guided::pointOf(size_t block, int i,
     for (size_t k = 0; k < b_.count_; ++k) {
         const LobeBlock& l = b_.sites_[k].lobes[block];
         if (!(l.lights >> i & 1) || !(l.chosen[i] > 0)) continue;
+        if (!(b_.indirectOf(b_.sites_[k], block * kBlock + size_t(i)) > 0)) continue;
         const float gives = luminance(absolute(weightOf(l))) * l.lobe[kRowAlbedo][i];
         if (gives > most) found.site = int(k), most = gives;
     }
@@ -83,7 +84,7 @@ void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext&
                      c.targets[at],
                      P,
                      {l.weight[0][i], l.weight[1][i], l.weight[2][i]},
-                     (s.lighting ? v.energyScale[i] : 1) * b_.indirectOf(at),
+                     (s.lighting ? v.energyScale[i] : 1) * b_.indirectOf(s, at),
                      l.chosen[i],
                      l.lobe[kRowSpread][i],
                      s.rays,

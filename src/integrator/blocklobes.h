@@ -20,6 +20,8 @@ struct BlockLobes {
     bool lighting = false; ///< a lighting shadeop
     bool lights = false;   ///< its lobe samples lights
     bool diffuse = false;  ///< its rays are diffuse
+    bool apart = false;    ///< indirectdiffuse(): diffuse lobes of its points leave the light of surfaces to it
+    bool direct = false;   ///< diffuse() where another call adds the light of surfaces
     bool walks = false;    ///< subsurface(): its rays walk below the surface
     uint32_t nth = 0;      ///< how many calls of a strip at this call site came before, in a loop
     std::vector<LobeBlock> lobes;
@@ -33,7 +35,7 @@ struct BlockLobes {
 
     /// Forgets the calls of the previous batch.
     void clearCalls() {
-        walks = false;
+        walks = apart = direct = false;
         nth = 0;
         narrow.clear();
         occurrence.clear();

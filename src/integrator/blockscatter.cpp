@@ -167,7 +167,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         }
         r.extra[i] = -1;
         const int32_t share = shareOf(c.rays[b * kBlock + size_t(i)]);
-        const float indirect = (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(b * kBlock + size_t(i));
+        const float indirect = (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(s, b * kBlock + size_t(i));
         if (indirect == 1 && share < 0 && !c.between) continue;
         RayExtra extra;
         if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];

@@ -3,6 +3,7 @@
 #include "integrator/blockguide.h"
 #include "integrator/chosenlights.h"
 #include "integrator/lightpathstates.h"
+#include "integrator/occlusioncalls.h"
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
@@ -28,9 +29,9 @@ bool isPlainLight(const BoundLight& l, bool chosen) {
 
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lastSkies_(s.lastSkies),
-      lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons),
-      store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces), vertexLight_(s.vertexLight),
-      stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+      lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), occlusion_(s.occlusion),
+      photons_(s.photons), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces),
+      vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
     const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
@@ -90,6 +91,7 @@ bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
 void BlockVertices::begin(const BatchContext& c, bool waits) {
     waits_ = waits;
     indirect_ = {};
+    apart_.clear();
     loops_.clear();
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
@@ -240,16 +242,20 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.lighting = s.info->kind != SiteKind::Trace;
     s.lights = (s.lighting && s.info->kind != SiteKind::Subsurface) || s.info->rowLights >= 0;
     if (s.lighting) s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind : &kSpecularKind;
-    else s.rays = store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, false});
+    else
+        s.rays =
+            store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, s.info->trace->apart});
     s.diffuse = s.rays->type == RayType::Diffuse;
     s.lobes.resize(std::max(s.lobes.size(), blocks_));
     for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = s.lobes[b].lights = 0;
     s.clearCalls();
     s.walks = s.info->kind == SiteKind::Subsurface;
+    s.apart = s.info->kind == SiteKind::Trace && s.info->trace->apart;
+    s.direct = s.info->kind == SiteKind::Diffuse && s.info->trace && s.info->trace->apart;
     s.rows.assign(s.walks ? blocks_ : 0, nullptr);
 }
 
-bool BlockVertices::request(const BatchContext& c) {
+bool BlockVertices::request(BatchContext& c) {
     CallCount calls(c);
     for (size_t k = 0; k < count_; ++k)
         if (sites_[k].nth > 0) loops_.try_emplace(sites_[k].number, points_, 0u);
@@ -271,8 +277,24 @@ bool BlockVertices::request(const BatchContext& c) {
             if (stages_.request(vertices_[b], *s.info->block, s.narrow.data() + b * rows * kBlock, kBlock, asked, s.lobes[b]))
                 return false;
         }
+        if (!waits_) noteHemispheres(s, c);
     }
     return true;
+}
+
+/// Notes the points of indirectdiffuse(), and normals that face away from the camera there.
+void BlockVertices::noteHemispheres(const Site& s, BatchContext& c) {
+    if (s.apart) apart_.resize(blocks_);
+    for (size_t b = 0; b < blocks_ && s.apart; ++b) apart_[b] |= s.lobes[b].asked;
+    if (s.info->kind != SiteKind::Trace || !s.info->trace->hemisphere) return;
+    for (size_t b = 0; b < blocks_; ++b)
+        for (Lanes left = s.lobes[b].asked; left; left &= left - 1) {
+            const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
+            if (!c.rays[point].camera()) continue;
+            surfaces_.pointsOfRows(c);
+            const float(*axis)[kBlock] = &s.lobes[b].lobe[kRowAxis];
+            occlusion_.noteTurnedAway(c, *s.info, int(point), {axis[0][i], axis[1][i], axis[2][i]});
+        }
 }
 
 /// Counts the calls with a weight in a loop. before: by point, those of earlier turns.

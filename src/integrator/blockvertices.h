@@ -51,7 +51,8 @@ private:
     bool loadPoints(size_t block, const BatchContext&);
     bool findSites(const BatchContext&);
     void beginSite(Site&, int number, const BatchContext&);
-    bool request(const BatchContext&);
+    bool request(BatchContext&);
+    void noteHemispheres(const Site&, BatchContext&);
     bool requestOf(Site&, const EmitRecord&, const BatchContext&);
     void countCalls(Site&, const EmitRecord&, const BatchContext&, std::vector<uint32_t>& before);
     void prepare();
@@ -121,6 +122,7 @@ private:
     const LightPathStates& paths_;
     MediaStacks& media_;
     MediumEvents& mediumEvents_;
+    OcclusionCalls& occlusion_;
     PhotonStage& photons_;
     RayStore& store_;
     ShadowRays& shadows_;

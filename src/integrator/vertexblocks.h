@@ -13,7 +13,11 @@ protected:
     using Site = BlockLobes; ///< a call site of the kernel
     VertexBlocks();
     std::span<LobeBlock*> lobesOf(size_t block);
-    float indirectOf(size_t point) const { return indirect_.empty() ? 1 : indirect_[point]; }
+    /// Factor of the light of surfaces that the ray of a lobe carries, without the energy rule.
+    float indirectOf(const Site& s, size_t point) const {
+        if (s.direct || (s.lighting && s.diffuse && !apart_.empty() && (apart_[point / kBlock] >> point % kBlock & 1))) return 0;
+        return indirect_.empty() ? 1 : indirect_[point];
+    }
     /// Sets the keys of the points of a block; the stream is still to be set.
     void beginNumbers(size_t block, render::NumberBlock&) const;
     /// Draws the random numbers of a stream (NumberBlock) at all points.
@@ -23,6 +27,7 @@ protected:
     bool waits_ = false;                         ///< the kernel waits for its results
     std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
     std::span<const float> indirect_;            ///< at exits of walks, by point: factor of the light of rays
+    std::vector<Lanes> apart_;                   ///< by block: points of indirectdiffuse(); empty: none
     std::vector<VertexBlock> vertices_;
     std::vector<RayBlock> rays_;                 ///< incoming rays, then the next rays
     std::vector<Site> sites_;                    ///< the first `count_`, in the order of the calls

@@ -16,8 +16,8 @@ bool isPlainTrace(const SiteInfo& s) {
     const bool rays = r.fixed && r.bias < 0 && r.maxDistance < 0 && r.maxHit < 0 && r.base < 0;
     const shading::RaySet& set = r.set; // of shadow rays, too
     if (s.rowLights >= 0 && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default)) return false;
-    return rays && t.weight < 0 && t.distribution < 0 && !t.map && !t.sums && !t.onlyLights && !t.hemisphere && !t.apart &&
-           !t.axis && !t.openness && t.fade.strength < 0 && t.records.call == 0;
+    return rays && t.weight < 0 && t.distribution < 0 && !t.map && !t.sums && !t.onlyLights && !t.axis && !t.openness &&
+           t.fade.strength < 0 && t.records.call == 0;
 }
 
 /// Finds the rows of a distribution's parameters (DistributionParams).
@@ -48,7 +48,6 @@ std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
     a.needsWo = (lobeLanes(1).lobes[s.lobe->index].needs & kNeedsWo) != 0;
     switch (s.kind) {
     case SiteKind::Diffuse:
-        if (s.trace) return nullptr;
         a.axis = s.rows[0];
         break;
     case SiteKind::Specular:
@@ -60,7 +59,8 @@ std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
         break;
     case SiteKind::Trace:
         if (!isPlainTrace(s)) return nullptr;
-        a.traces = true;
+        a.traces = !s.trace->hemisphere; // indirectdiffuse() has the normal for a zero direction
+        if (s.trace->hemisphere && a.needsWo) return nullptr;
         a.from = s.rows[0];
         a.axis = s.rows[1];
         a.wo = s.rowWo;

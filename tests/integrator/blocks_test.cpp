@@ -354,11 +354,16 @@ TEST(Blocks, FollowLoopsAndWalksBelowSurfaces) {
          + .2 * specular(n, -normalize(I), .2);
     Oi = Os;
 })");
+    writeShader("apart2", R"(surface apart2() {
+    normal n = faceforward(normalize(N), I);
+    Ci = Cs * (.6 * diffuse(n) + .1 * specular(n, -normalize(I), .2));
+    if (mod(floor(9 * u), 3) > 0) Ci += mod(floor(9 * v), 2) * .5 * Cs * indirectdiffuse(P, n, 4);
+})");
     const std::string sky = "LightSource \"envlight\" 9 \"intensity\" .3\n";
     const std::string shallow = "Attribute \"trace\" \"int maxdiffusedepth\" 1 \"int maxspeculardepth\" 1\n";
     Settings local;
     local.localRoulette = true;
-    for (const char* shader : {"\"turns\"", "\"milky\""})
+    for (const char* shader : {"\"turns\"", "\"milky\"", "\"apart2\""})
         for (const std::string& more : {std::string(), sky, shallow, sky + "Opacity .5 .6 .7\n"})
             for (const Settings& s : {Settings(), local}) {
                 const std::string rib = roomOf(shader, more);

@@ -25,7 +25,9 @@ BlockVertices::Guided::Point BlockVertices::Guided::pointOf(size_t block, int i,
     for (size_t k = 0; k < b_.count_; ++k) {
         const LobeBlock& l = b_.sites_[k].lobes[block];
         if (!(l.lights >> i & 1) || !(l.chosen[i] > 0)) continue;
-        if (!(b_.indirectOf(b_.sites_[k], block * kBlock + size_t(i)) > 0)) continue;
+        const Site& s = b_.sites_[k];
+        const size_t point = block * kBlock + size_t(i);
+        if (!(b_.indirectOf(s, point) > 0) || (!s.options.empty() && s.options[point].fade.fades())) continue;
         const float gives = luminance(absolute(weightOf(l))) * l.lobe[kRowAlbedo][i];
         if (gives > most) found.site = int(k), most = gives;
     }
@@ -78,7 +80,7 @@ void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext&
         const Vec3 w(w_[0][i], w_[1][i], w_[2][i]), P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
         const LobeValue f{
             {value[kRowColour][i], value[kRowColour + 1][i], value[kRowColour + 2][i]}, value[kRowFcos][i], value[kRowPdf][i]};
-        const Vec3 origin = v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, n, v.error[i], w);
+        const RayOptions options = s.options.empty() ? RayOptions() : s.options[at];
         const uint16_t path = from.path ? b_.pathOf(s, false, at, w, c) : uint16_t(0);
         guide_.send({from,
                      c.targets[at],
@@ -89,10 +91,10 @@ void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext&
                      l.lobe[kRowSpread][i],
                      s.rays,
                      b_.shareOf(from),
-                     1,
-                     1e38f},
-                    points_[at].aim, w, f, origin, path, b_.world_.media_.empty() ? from.media : b_.media_.towards(c, int(at), w),
-                    sched);
+                     options.importance,
+                     options.maxDistance},
+                    points_[at].aim, w, f, b_.originOf(s, at, w), path,
+                    b_.world_.media_.empty() ? from.media : b_.media_.towards(c, int(at), w), sched);
     }
 }
 

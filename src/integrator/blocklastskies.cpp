@@ -41,10 +41,10 @@ void BlockVertices::endLobe(const Site& s, size_t b, const BatchContext& c) {
         if (!(pdf > 0)) continue;
         const size_t point = points[i];
         const auto row3 = [&](const float(*r)[kBlock]) { return Vec3(r[0][i], r[1][i], r[2][i]); };
-        const Vec3 w = row3(&drawn_[kRowDirection]), P = row3(v.P);
+        const Vec3 w = row3(&drawn_[kRowDirection]);
         const Color weight = row3(l.weight) * (row3(&value_[kRowColour]) / pdf) * row3(v.weight);
-        const Vec3 origin = v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, row3(v.n), v.error[i], w);
-        LastRay& ray = ends_.emplace_back(int(point), s.rays, origin, w, weight, c.targets[point]);
+        LastRay& ray = ends_.emplace_back(int(point), s.rays, originOf(s, point, w), w, weight, c.targets[point]);
+        ray.maxDistance = s.options.empty() ? 1e38f : s.options[point].maxDistance;
         ray.share = shareOf(c.rays[point]);
         ray.path = pathOf(s, false, point, w, c);
     }

@@ -210,12 +210,21 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
     stages_.aim(vertices_[b], l, shadow_);
     std::fill_n(sent_, kBlock, -1);
     const Lanes placed = l.asked;
+    ShadowBlock common;
+    int32_t alone[kBlock];
     for (size_t k = 0; k < count_; ++k) {
         const Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
-        const Lanes asked = l.asked = litBy(k, b, of) & placed;
-        if (!asked) continue;
-        s.lanes->evaluate(lobe.lobe[0], asked, l.w[0], value_[0]);
+        l.asked = litBy(k, b, of) & placed;
+        const bool own = !s.options.empty(); // shadow rays of its own
+        if (own) {
+            common = shadow_;
+            limitShadows(s, b, of, l);
+            std::swap_ranges(sent_, sent_ + kBlock, alone);
+            std::fill_n(sent_, kBlock, -1);
+        }
+        const Lanes asked = l.asked;
+        if (asked) s.lanes->evaluate(lobe.lobe[0], asked, l.w[0], value_[0]);
         for (Lanes some = contribute(s, vertices_[b], lobe, l, c, points); some; some &= some - 1) {
             const size_t lane = size_t(std::countr_zero(some)), point = b * kBlock + lane;
             const int32_t query = queryAt_.empty() ? -1 : queryAt_[point];
@@ -231,6 +240,10 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
                                 pdf},
                                int(&of - world_.lights_.data())});
             }
+        }
+        if (own) {
+            shadow_ = common;
+            std::copy_n(alone, kBlock, sent_);
         }
     }
 }

@@ -10,6 +10,14 @@
 
 namespace alpenglow::integrator {
 
+/// Parameters of trace() for its ray, by point.
+struct RayOptions {
+    float bias = -1; ///< distance of the origin from the point; < 0: by the error bound of the hit
+    float maxDistance = 1e38f;
+    float importance = 1; ///< factor of PathRay::importance
+    shading::Fade fade;
+};
+
 /// A call site of the kernel that requests lobes.
 struct BlockLobes {
     int number = 0;                 ///< call site of the kernel, or kSegmentEvent
@@ -29,6 +37,7 @@ struct BlockLobes {
     std::vector<float> narrow;         ///< arguments, by block, for kernels whose strips are narrower than a block
     std::vector<const float*> rows;    ///< by block: weight and arguments of its first point, `stride` floats apart
     int stride = 0;
+    std::vector<RayOptions> options; ///< by point; empty: none
     /// By point, for further calls of a call site: how many of the earlier ones had a weight.
     std::vector<uint32_t> occurrence;
     uint32_t occurrenceAt(size_t point) const { return occurrence.empty() ? 0 : occurrence[point]; }
@@ -39,6 +48,7 @@ struct BlockLobes {
         nth = 0;
         narrow.clear();
         occurrence.clear();
+        options.clear();
     }
     /// Points of a block whose lobe may be followed and is not a delta.
     Lanes spreads(size_t block) const;

@@ -101,6 +101,7 @@ void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
     walkBelow(b, c);
     if (!next_.goes) return;
     turnRays(b, c);
+    applyOptions(b);
     keepLobes(b, c);
     spawn(rays_[b], sched);
 }
@@ -168,8 +169,10 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         r.extra[i] = -1;
         const int32_t share = shareOf(c.rays[b * kBlock + size_t(i)]);
         const float indirect = (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(s, b * kBlock + size_t(i));
-        if (indirect == 1 && share < 0 && !c.between) continue;
+        const bool fades = !s.options.empty() && s.options[b * kBlock + size_t(i)].fade.fades();
+        if (indirect == 1 && share < 0 && !c.between && !fades) continue;
         RayExtra extra;
+        if (fades) extra.fade = s.options[b * kBlock + size_t(i)].fade;
         if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];
         extra.indirect = indirect;
         extra.share = share;

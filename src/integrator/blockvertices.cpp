@@ -234,6 +234,9 @@ bool BlockVertices::findSites(const BatchContext& c) {
     return true;
 }
 
+/// Whether arguments of a call are read point by point.
+static bool readsRows(const BlockLobes& s) { return s.walks || s.info->block->options; }
+
 void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.number = number;
     s.info = &c.bound->sites[size_t(number)];
@@ -252,7 +255,7 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.walks = s.info->kind == SiteKind::Subsurface;
     s.apart = s.info->kind == SiteKind::Trace && s.info->trace->apart;
     s.direct = s.info->kind == SiteKind::Diffuse && s.info->trace && s.info->trace->apart;
-    s.rows.assign(s.walks ? blocks_ : 0, nullptr);
+    s.rows.assign(readsRows(s) ? blocks_ : 0, nullptr);
 }
 
 bool BlockVertices::request(BatchContext& c) {
@@ -273,11 +276,12 @@ bool BlockVertices::request(BatchContext& c) {
         for (size_t b = 0; b < blocks_ && !s.narrow.empty(); ++b) {
             const Lanes asked = std::exchange(s.lobes[b].asked, 0) & vertices_[b].points;
             const size_t rows = s.narrow.size() / (blocks_ * kBlock);
-            if (s.walks) s.rows[b] = s.narrow.data() + (b * rows + 3) * kBlock, s.stride = kBlock;
+            if (readsRows(s)) s.rows[b] = s.narrow.data() + (b * rows + 3) * kBlock, s.stride = kBlock;
             if (stages_.request(vertices_[b], *s.info->block, s.narrow.data() + b * rows * kBlock, kBlock, asked, s.lobes[b]))
                 return false;
         }
         if (!waits_) noteHemispheres(s, c);
+        if (s.info->block->options && !readOptions(s, c)) return false;
     }
     return true;
 }
@@ -316,7 +320,7 @@ bool BlockVertices::requestOf(Site& s, const EmitRecord& e, const BatchContext& 
         for (int at = 0; at < e.lanes && size_t(e.first + at) < points_; at += kBlock) {
             const size_t b = size_t(e.first + at) / kBlock;
             const Lanes asked = Lanes(e.mask >> at) & vertices_[b].points;
-            if (s.walks) s.rows[b] = rows + 3 * e.lanes + at, s.stride = e.lanes;
+            if (readsRows(s)) s.rows[b] = rows + 3 * e.lanes + at, s.stride = e.lanes;
             if (asked && stages_.request(vertices_[b], *s.info->block, rows + at, e.lanes, asked, s.lobes[b])) return false;
         }
         return true;

@@ -106,6 +106,11 @@ private:
     static bool albedoIsMeasured(const Site&);
     void showAlbedo(BatchContext&);
     static Color measuredAlbedo(const Site&, const PathRay&, size_t point);
+    // blockoptions.cpp
+    bool readOptions(Site&, BatchContext&);
+    void limitShadows(const Site&, size_t block, const BoundLight&, LightBlock&);
+    void applyOptions(size_t block);
+    Vec3 originOf(const Site&, size_t point, const Vec3& w) const;
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
     void drawDirections(size_t block);

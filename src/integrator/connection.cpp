@@ -125,7 +125,8 @@ void Connection::send(const Reached& r) {
     const int32_t share = shareOf(l);
     const uint16_t path = paths_.atLobe(l, c_->points[size_t(l.point)], ray, r.w);
     const RayKind* kind = l.trace ? store_.kindOf({RayType::Transmission, false, l.rays->set, 0}) : &kShadowKind;
-    if (r.query == lastQuery_)
+    const bool shares = !(light.isSky() && l.maxDistance < 1e37f); // others see the sky farther
+    if (shares && r.query == lastQuery_)
         if (ShadowRay& last = shadows_.queue.back(); last.kind == kind && last.origin == from) {
             shadows_.more.push_back({given, l.target, share, sums, path, last.more});
             last.more = int32_t(shadows_.more.size()) - 1;

@@ -54,6 +54,7 @@ struct LobeArguments {
     float perRow = 0;     ///< > 0: `a` is this over the row
     bool needsWo = false; ///< the kind reads the direction toward the viewer
     bool traces = false;  ///< trace(): a direction of length 0 asks for nothing
+    bool options = false; ///< trace(): it has parameters that are read point by point (integrator/blockoptions.cpp)
     /// Of distributions (DistributionParams): rows that are copied as they are, from kRowRoughness on; of those that are not
     /// given, the number that stands for them.
     bool surface = false;

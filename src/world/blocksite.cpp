@@ -13,11 +13,10 @@ namespace {
 bool isPlainTrace(const SiteInfo& s) {
     const TraceSite& t = *s.trace;
     const RaySite& r = *s.rays;
-    const bool rays = r.fixed && r.bias < 0 && r.maxDistance < 0 && r.maxHit < 0 && r.base < 0;
+    const bool rays = r.fixed && r.base < 0;
     const shading::RaySet& set = r.set; // of shadow rays, too
     if (s.rowLights >= 0 && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default)) return false;
-    return rays && t.weight < 0 && t.distribution < 0 && !t.map && !t.sums && !t.onlyLights && !t.axis && !t.openness &&
-           t.fade.strength < 0 && t.records.call == 0;
+    return rays && t.distribution < 0 && !t.map && !t.sums && !t.onlyLights && !t.axis && !t.openness && t.records.call == 0;
 }
 
 /// Finds the rows of a distribution's parameters (DistributionParams).
@@ -59,6 +58,8 @@ std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
         break;
     case SiteKind::Trace:
         if (!isPlainTrace(s)) return nullptr;
+        a.options = s.rays->bias >= 0 || s.rays->maxDistance >= 0 || s.rays->maxHit >= 0 || s.trace->weight >= 0 ||
+                    s.trace->fade.strength >= 0;
         a.traces = !s.trace->hemisphere; // indirectdiffuse() has the normal for a zero direction
         if (s.trace->hemisphere && a.needsWo) return nullptr;
         a.from = s.rows[0];

@@ -359,11 +359,19 @@ TEST(Blocks, FollowLoopsAndWalksBelowSurfaces) {
     Ci = Cs * (.6 * diffuse(n) + .1 * specular(n, -normalize(I), .2));
     if (mod(floor(9 * u), 3) > 0) Ci += mod(floor(9 * v), 2) * .5 * Cs * indirectdiffuse(P, n, 4);
 })");
+    writeShader("near", R"(surface near() {
+    normal n = faceforward(normalize(N), I);
+    float some = mod(floor(9 * u), 3);
+    Ci = Cs * (.3 * diffuse(n)
+       + .3 * trace(P, n, "distribution", "oren-nayar", "roughness", .5, "samplelights", 1, "bias", .05 * some, "maxdist", 1 + 2 * v)
+       + .2 * trace(P, reflect(normalize(I), n), "samplecone", .2, "samplearealights", 1, "maxdist", 2, "weight", color(some))
+       + .2 * indirectdiffuse(P, n, 4, "maxdist", 3, "falloff", some, "bias", .01));
+})");
     const std::string sky = "LightSource \"envlight\" 9 \"intensity\" .3\n";
     const std::string shallow = "Attribute \"trace\" \"int maxdiffusedepth\" 1 \"int maxspeculardepth\" 1\n";
     Settings local;
     local.localRoulette = true;
-    for (const char* shader : {"\"turns\"", "\"milky\"", "\"apart2\""})
+    for (const char* shader : {"\"turns\"", "\"milky\"", "\"apart2\"", "\"near\""})
         for (const std::string& more : {std::string(), sky, shallow, sky + "Opacity .5 .6 .7\n"})
             for (const Settings& s : {Settings(), local}) {
                 const std::string rib = roomOf(shader, more);

@@ -1,0 +1,81 @@
+// Parameters of trace() that only some calls have, point by point: "bias", "maxdist", "weight", "falloff".
+#include "integrator/blockvertices.h"
+#include "integrator/occlusioncalls.h"
+#include "integrator/surfacepoints.h"
+#include <algorithm>
+#include <bit>
+
+namespace alpenglow::integrator {
+
+/// Reads the parameters of a call. A ray with "weight" 0 is not sent. Returns false if points choose among many lights, whose
+/// shadow rays all begin alike.
+bool BlockVertices::readOptions(Site& s, BatchContext& c) {
+    const SiteInfo& info = *s.info;
+    if (s.lights && !world_.lightLists_[size_t(c.binding->lightList)].chooser.empty()) return false;
+    s.options.assign(points_, {});
+    for (size_t b = 0; b < blocks_; ++b)
+        for (Lanes left = s.lobes[b].asked; left; left &= left - 1) {
+            const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
+            const auto row = [&](int r) { return s.rows[b][size_t(r) * size_t(s.stride) + i]; };
+            const auto number = [&](int r, float otherwise) { return r < 0 ? otherwise : row(r); };
+            RayOptions& o = s.options[point];
+            o.bias = number(info.rays->bias, -1);
+            o.maxDistance = std::min(number(info.rays->maxDistance, 1e38f), number(info.rays->maxHit, 1e38f));
+            if (o.maxDistance < 0) o.maxDistance = 1e38f; // PRMan: no limit
+            if (const int w = info.trace->weight; w >= 0)
+                o.importance = std::max(0.f, maxComponent(Color(row(w), row(w + 1), row(w + 2))));
+            if (const FadeSite& fade = info.trace->fade; fade.strength >= 0)
+                o.fade = {std::max(0.f, row(fade.strength)), o.maxDistance, number(fade.mode, 0) != 0};
+            if (o.importance > 0) continue;
+            surfaces_.pointsOfRows(c);
+            const float samples =
+                info.trace->hemisphere ? number(info.rays->samples, 0) : std::max(1.f, number(info.rays->samples, 1));
+            counters_.ignored += uint64_t(occlusion_.samplesOf(samples, c.points[point].shape, info, c));
+            s.lobes[b].asked &= ~(1u << i);
+        }
+    return true;
+}
+
+/// Sets the shadow rays of a call with a bias or a limit of distance, and removes samples out of its reach.
+void BlockVertices::limitShadows(const Site& s, size_t b, const BoundLight& of, LightBlock& l) {
+    for (Lanes left = l.asked; left; left &= left - 1) {
+        const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
+        const RayOptions& o = s.options[point];
+        const auto row3 = [&](const Row* r) { return Vec3(r[0][i], r[1][i], r[2][i]); };
+        const Vec3 w = row3(l.w), origin = originOf(s, point, w), way = row3(l.end) - origin;
+        const Vec3 direction = l.emitter ? normalizeOr(way, w) : w;
+        for (int q = 0; q < 3; ++q) shadow_.origin[q][i] = origin[q], shadow_.direction[q][i] = direction[q];
+        shadow_.length[i] = l.emitter ? length(way) * (1 - 1e-6f) : of.isSky() ? o.maxDistance : l.far[i];
+        const bool limited = l.emitter || (!of.isSky() && of.kind != LightKind::Distant);
+        // l.far is less than the distance of the light by kShort.
+        constexpr float kShort = 1 - 1e-5f;
+        const float away = l.emitter ? length(way) : l.far[i] < 1e30f ? l.far[i] / kShort : l.far[i];
+        if (limited && away > o.maxDistance) l.asked &= ~(1u << i);
+    }
+}
+
+/// Applies the parameters to the next rays of a block.
+void BlockVertices::applyOptions(size_t b) {
+    RayBlock& r = rays_[b];
+    for (Lanes left = next_.goes; left; left &= left - 1) {
+        const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
+        const Site& s = sites_[size_t(next_.site[i])];
+        if (s.options.empty()) continue;
+        const Vec3 origin = originOf(s, point, {next_.direction[0][i], next_.direction[1][i], next_.direction[2][i]});
+        for (int q = 0; q < 3; ++q) r.origin[q][i] = origin[q];
+        r.maxDistance[i] = s.options[point].maxDistance;
+        r.importance[i] *= s.options[point].importance;
+    }
+}
+
+/// Origin of a ray of a lobe in direction w.
+Vec3 BlockVertices::originOf(const Site& s, size_t point, const Vec3& w) const {
+    const VertexBlock& v = vertices_[point / kBlock];
+    const size_t i = point % kBlock;
+    const Vec3 P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
+    const float bias = s.options.empty() ? -1 : s.options[point].bias;
+    if (bias >= 0) return P + w * bias;
+    return v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, n, v.error[i], w);
+}
+
+} // namespace alpenglow::integrator

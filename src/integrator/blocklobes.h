@@ -16,6 +16,8 @@ struct RayOptions {
     float maxDistance = 1e38f;
     float importance = 1; ///< factor of PathRay::importance
     shading::Fade fade;
+    bool elsewhere = false; ///< the ray starts at `from`, so the lobe samples no lights
+    Vec3 from;
 };
 
 /// A call site of the kernel that requests lobes.

@@ -1,4 +1,4 @@
-// Parameters of trace() that only some calls have, point by point: "bias", "maxdist", "weight", "falloff".
+// Parameters of trace() that only some calls have, point by point: "bias", "maxdist", "weight", "falloff", an origin of its own.
 #include "integrator/blockvertices.h"
 #include "integrator/occlusioncalls.h"
 #include "integrator/surfacepoints.h"
@@ -6,6 +6,15 @@
 #include <bit>
 
 namespace alpenglow::integrator {
+
+static const geometry::SurfacePoint& surfaceAt(const BatchContext& c, size_t point) {
+    return c.points.empty() ? c.surfaces[point] : c.points[point].surface;
+}
+
+bool BlockVertices::hasOptions(const Site& s) const {
+    return s.info->block->options ||
+           std::any_of(s.lobes.begin(), s.lobes.begin() + long(blocks_), [](const LobeBlock& l) { return l.elsewhere != 0; });
+}
 
 /// Reads the parameters of a call. A ray with "weight" 0 is not sent. Returns false if points choose among many lights, whose
 /// shadow rays all begin alike.
@@ -26,6 +35,11 @@ bool BlockVertices::readOptions(Site& s, BatchContext& c) {
                 o.importance = std::max(0.f, maxComponent(Color(row(w), row(w + 1), row(w + 2))));
             if (const FadeSite& fade = info.trace->fade; fade.strength >= 0)
                 o.fade = {std::max(0.f, row(fade.strength)), o.maxDistance, number(fade.mode, 0) != 0};
+            if ((o.elsewhere = s.lobes[b].elsewhere >> i & 1)) {
+                if (surfaceAt(c, point).displaced) return false; // then the ray starts at the point after all
+                const int from = info.rows[0];
+                o.from = {row(from), row(from + 1), row(from + 2)};
+            }
             if (o.importance > 0) continue;
             surfaces_.pointsOfRows(c);
             const float samples =
@@ -73,8 +87,12 @@ Vec3 BlockVertices::originOf(const Site& s, size_t point, const Vec3& w) const {
     const VertexBlock& v = vertices_[point / kBlock];
     const size_t i = point % kBlock;
     const Vec3 P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
-    const float bias = s.options.empty() ? -1 : s.options[point].bias;
-    if (bias >= 0) return P + w * bias;
+    if (!s.options.empty()) {
+        const RayOptions& o = s.options[point];
+        const Vec3 at = o.elsewhere ? o.from : P;
+        if (o.bias >= 0) return at + w * o.bias;
+        if (o.elsewhere) return at + w * geometry::roundingError(at);
+    }
     return v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, n, v.error[i], w);
 }
 

@@ -154,7 +154,8 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         const Site& s = sites_[size_t(next_.site[i])];
         const uint64_t kind = reinterpret_cast<uintptr_t>(s.rays);
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
-        const bool sampled = s.lights && !(next_.single >> i & 1); // then emission that it hits is weighted by MIS
+        const bool sampled =
+            s.lights && !((next_.single | s.lobes[b].elsewhere) >> i & 1); // then emission that it hits is weighted by MIS
         r.pdf[i] = sampled ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
         r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
         if (const uint16_t path = uint16_t(r.path[i])) {

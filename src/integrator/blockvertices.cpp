@@ -235,7 +235,7 @@ bool BlockVertices::findSites(const BatchContext& c) {
 }
 
 /// Whether arguments of a call are read point by point.
-static bool readsRows(const BlockLobes& s) { return s.walks || s.info->block->options; }
+static bool readsRows(const BlockLobes& s) { return s.walks || s.info->kind == SiteKind::Trace; }
 
 void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.number = number;
@@ -250,7 +250,7 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
             store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, s.info->trace->apart});
     s.diffuse = s.rays->type == RayType::Diffuse;
     s.lobes.resize(std::max(s.lobes.size(), blocks_));
-    for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = s.lobes[b].lights = 0;
+    for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = s.lobes[b].lights = s.lobes[b].elsewhere = 0;
     s.clearCalls();
     s.walks = s.info->kind == SiteKind::Subsurface;
     s.apart = s.info->kind == SiteKind::Trace && s.info->trace->apart;
@@ -281,7 +281,7 @@ bool BlockVertices::request(BatchContext& c) {
                 return false;
         }
         if (!waits_) noteHemispheres(s, c);
-        if (s.info->block->options && !readOptions(s, c)) return false;
+        if (hasOptions(s) && !readOptions(s, c)) return false;
     }
     return true;
 }
@@ -344,7 +344,7 @@ void BlockVertices::prepare() {
             }
             s.lanes->prepare(l.lobe[0], l.asked);
             for (int i = 0; s.lights && i < kBlock; ++i)
-                l.lights |= Lanes((l.asked & ~vertices_[b].guided) >> i & (l.lobe[kRowDelta][i] == 0)) << i;
+                l.lights |= Lanes((l.asked & ~vertices_[b].guided & ~l.elsewhere) >> i & (l.lobe[kRowDelta][i] == 0)) << i;
         }
     }
 }

@@ -107,6 +107,7 @@ private:
     void showAlbedo(BatchContext&);
     static Color measuredAlbedo(const Site&, const PathRay&, size_t point);
     // blockoptions.cpp
+    bool hasOptions(const Site&) const;
     bool readOptions(Site&, BatchContext&);
     void limitShadows(const Site&, size_t block, const BoundLight&, LightBlock&);
     void applyOptions(size_t block);

@@ -39,8 +39,9 @@ struct alignas(64) LobeBlock {
     Row lobe[kLobeRows]; ///< LobeRow
     Row chosen;          ///< by select(): probability of following its ray
     Lanes asked = 0;
-    Lanes lights = 0; ///< points whose lobe samples lights
-    Lanes ended = 0;  ///< by select(): points where a depth limit ends the ray that would have been sent
+    Lanes lights = 0;    ///< points whose lobe samples lights
+    Lanes elsewhere = 0; ///< by request(): points whose ray starts elsewhere
+    Lanes ended = 0;     ///< by select(): points where a depth limit ends the ray that would have been sent
 };
 
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.

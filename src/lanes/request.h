@@ -52,7 +52,6 @@ static Lanes requestLobes(const VertexBlock& v, const LobeArguments& a, const fl
         if (a.traces) wanted &= ~isZero(load3(rows + a.axis * stride + at, stride));
         store3(to.weight, at, w);
         giveDirections(v, a, rows, stride, at, to, usual);
-        if (a.from >= 0) usual &= ~startsElsewhere(v, rows + a.from * stride, stride, at);
         if (a.lights >= 0) usual &= load(rows + a.lights * stride + at) != 0;
         if (a.samples >= 0) usual &= load(rows + a.samples * stride + at) <= vf(kMostSamples);
         if (a.surface) giveSurface(a, rows, stride, at, to);
@@ -63,6 +62,7 @@ static Lanes requestLobes(const VertexBlock& v, const LobeArguments& a, const fl
         }
         store(to.lobe[kRowA] + at, x);
         some |= bitsFrom(wanted, at);
+        if (a.from >= 0) to.elsewhere |= bitsFrom(wanted & startsElsewhere(v, rows + a.from * stride, stride, at), at);
         odd |= bitsFrom(wanted & ~usual, at) | bitsFrom(mask & ~finite(w), at);
     }
     to.asked |= some;

@@ -20,8 +20,8 @@ namespace alpenglow::lanes {
 
 struct Stages {
     /// Sets the rows named by `needs` (LobeNeed) for the points of `asked`, and LobeBlock::asked, the points of nonzero weight,
-    /// including weights. Returns points that must be processed one by one: numbers that are not finite, directions whose square
-    /// overflows or underflows, rays that do not start at the point.
+    /// including weights, and LobeBlock::elsewhere. Returns points that must be processed one by one: numbers that are not
+    /// finite, directions whose square overflows or underflows.
     Lanes (*request)(const VertexBlock&, const LobeArguments&, const float* weight, int stride, Lanes asked, LobeBlock&);
     /// Sets LobeBlock::chosen, VertexBlock::energyScale and passes.
     Selected (*select)(VertexBlock&, LobeBlock* const* sites, int count, const SelectRules&);

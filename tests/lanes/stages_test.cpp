@@ -79,6 +79,7 @@ TEST(Stages, RequestsAreThoseOfOnePoint) {
         for (int i = 0; i < kBlock; ++i) {
             for (int q = 0; q < 3; ++q) {
                 rows[(3 + q) * kStride + i] = v.P[q][i]; // trace() starts at the point
+                if (i == turn % 29) rows[(3 + q) * kStride + i] += 1;
                 if (i == turn % 31) rows[(6 + q) * kStride + i] = 0;
                 if (i == turn % 37) rows[q * kStride + i] = 0;
                 if (i == turn % 41) rows[(9 + q) * kStride + i] *= 1e-20f;
@@ -95,6 +96,7 @@ TEST(Stages, RequestsAreThoseOfOnePoint) {
                 EXPECT_EQ(l.asked >> i & 1, asks);
                 if (!asks) continue;
                 EXPECT_EQ(odd >> i & 1, i == turn % 41) << "a direction whose square no float holds";
+                EXPECT_EQ(l.elsewhere >> i & 1, i == turn % 29);
                 if (odd >> i & 1) continue;
                 const Vec3 n = at(v.n, i), viewer = normalizeOr(-at(v.I, i), n);
                 EXPECT_TRUE(same(at(l.weight, i), triple(0)));

@@ -262,8 +262,9 @@ void BlockVertices::sendShadow(const Site& site, size_t point, size_t lane, cons
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
     sent_[lane] = int32_t(shadows_.queue.size());
     ShadowRay& s = shadows_.queue.emplace_back();
-    s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane], row3(shadow_.light),
-         c.targets[point],     c.rays[point].shutter(), &c.rays[point]};
+    s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane],
+         row3(shadow_.light),  c.targets[point],        world_.shadesAtOpen_ ? 0 : c.rays[point].shutter(),
+         &c.rays[point]};
     s.share = shareOf(c.rays[point]);
     if (!world_.media_.empty()) s.media = media_.towards(c, int(point), w);
     s.path = pathOf(site, false, point, w, c);

@@ -15,6 +15,7 @@ struct RayOptions {
     float bias = -1; ///< distance of the origin from the point; < 0: by the error bound of the hit
     float maxDistance = 1e38f;
     float importance = 1; ///< factor of PathRay::importance
+    int samples = 1;      ///< rays, if all lobes are followed
     shading::Fade fade;
     bool elsewhere = false; ///< the ray starts at `from`, so the lobe samples no lights
     Vec3 from;

@@ -12,13 +12,13 @@ namespace alpenglow::integrator {
 /// Whether light kernels of a binding read more at points inside media than rows hold.
 bool BlockVertices::needsPoints(const SurfaceBinding& b) const {
     const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
-    return !usable_ || paths_.automaton || !list.chooser.empty() ||
+    return !usable_ || !rules_.pickOne || paths_.automaton || !list.chooser.empty() ||
            !std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) { return inRows_[size_t(l)] != 0; });
 }
 
 bool BlockVertices::run(BatchContext& c, const Homogeneous& h, std::span<const Vec3> beside, Sched& sched) {
     const SurfaceBinding& b = *c.binding;
-    const bool plain = usable_ && plain_[size_t(b.lightList)] && !b.matte;
+    const bool plain = usable_ && rules_.pickOne && plain_[size_t(b.lightList)] && !b.matte;
     if (!plain || photons_.photonTrace() || !takesRays(c)) return false;
     begin(c, false);
     loadVertices(c);
@@ -27,7 +27,7 @@ bool BlockVertices::run(BatchContext& c, const Homogeneous& h, std::span<const V
 }
 
 bool BlockVertices::light(const BatchContext& c, const Homogeneous& h, const BoundLight& light, std::vector<BlockLit>& found) {
-    if (!usable_ || !inRows_[size_t(&light - world_.lights_.data())]) return false;
+    if (!usable_ || !rules_.pickOne || !inRows_[size_t(&light - world_.lights_.data())]) return false;
     begin(c, false);
     loadVertices(c);
     beginMedium({}, h.anisotropy);

@@ -12,7 +12,7 @@ static const geometry::SurfacePoint& surfaceAt(const BatchContext& c, size_t poi
 }
 
 bool BlockVertices::hasOptions(const Site& s) const {
-    return s.info->block->options ||
+    return s.info->block->options || !rules_.pickOne ||
            std::any_of(s.lobes.begin(), s.lobes.begin() + long(blocks_), [](const LobeBlock& l) { return l.elsewhere != 0; });
 }
 
@@ -40,11 +40,13 @@ bool BlockVertices::readOptions(Site& s, BatchContext& c) {
                 const int from = info.rows[0];
                 o.from = {row(from), row(from + 1), row(from + 2)};
             }
-            if (o.importance > 0) continue;
+            if (o.importance > 0 && rules_.pickOne) continue;
             surfaces_.pointsOfRows(c);
             const float samples =
                 info.trace->hemisphere ? number(info.rays->samples, 0) : std::max(1.f, number(info.rays->samples, 1));
-            counters_.ignored += uint64_t(occlusion_.samplesOf(samples, c.points[point].shape, info, c));
+            o.samples = occlusion_.samplesOf(samples, c.points[point].shape, info, c);
+            if (o.importance > 0) continue;
+            counters_.ignored += uint64_t(o.samples);
             s.lobes[b].asked &= ~(1u << i);
         }
     return true;

@@ -16,6 +16,12 @@
 namespace alpenglow::integrator {
 
 void BlockVertices::scatter(BatchContext& c, Sched& sched) {
+    turn_ = 0;
+    if (!rules_.pickOne) {
+        pairs_.resize(1);
+        for (size_t b = 0; b < blocks_; ++b) scatterAll(b, c, sched);
+        return;
+    }
     const bool chooses = !c.between && (count_ > 1 || !c.clear.empty()); // in a medium each point has one lobe
     if (chooses) drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, choices_, false);
     pairs_.resize(1);
@@ -25,6 +31,29 @@ void BlockVertices::scatter(BatchContext& c, Sched& sched) {
             c.passes[i] = vertices_[b].passes[i % kBlock];
         drawDirections(b);
         if (next_.goes) sendRays(b, c, sched);
+    }
+}
+
+/// Follows all lobes, each with as many rays as it asks for.
+void BlockVertices::scatterAll(size_t b, BatchContext& c, Sched& sched) {
+    const RayBlock incoming = rays_[b];
+    for (size_t k = 0; k < count_; ++k) {
+        const LobeBlock& l = sites_[k].lobes[b];
+        Lanes left = l.asked & vertices_[b].points;
+        for (int i = 0; i < kBlock; ++i) left &= ~(Lanes(!(l.chosen[i] > 0)) << i);
+        for (turn_ = 0; left; ++turn_) {
+            for (int i = 0; i < kBlock; ++i) {
+                const bool goes = left >> i & 1;
+                const int samples = goes && !waits_ ? sites_[k].options[b * kBlock + size_t(i)].samples : 1;
+                next_.site[i] = goes ? int32_t(k) : -1;
+                next_.scale[i] = 1 / float(samples);
+                if (int(turn_) + 1 >= samples) left &= ~(1u << i);
+            }
+            next_.goes = next_.single = 0;
+            drawDirections(b);
+            if (next_.goes) sendRays(b, c, sched);
+            rays_[b] = incoming;
+        }
     }
 }
 
@@ -47,6 +76,10 @@ void BlockVertices::drawDirections(size_t b) {
         const Site& s = sites_[size_t(next_.site[i])];
         n.stream[i] = uint32_t(s.number) << 1;
         n.occurrence[i] = s.occurrenceAt(b * kBlock + size_t(i)) * 4096;
+        if (rules_.pickOne || waits_) continue;
+        const auto samples = uint32_t(s.options[b * kBlock + size_t(i)].samples);
+        const render::SampleNumbers of = sampleOf(rays_[b], i).numbers.draw(turn_, samples);
+        n.low[i] = of.low(), n.high[i] = of.high(), n.index[i] = of.index();
     }
     render::drawBlocks(std::span(pairs_).first(1));
     for (size_t k = 0; k < count_; ++k) {
@@ -73,11 +106,11 @@ void BlockVertices::throwDice(size_t b) {
     uint32_t keys[kMostSites];
     for (size_t k = 0; k < count_; ++k) keys[k] = uint32_t(sites_[k].number);
     stages_.name(v, keys, next_);
-    for (int i = 0; i < kBlock && !loops_.empty(); ++i) { // further calls in loops
+    for (int i = 0; i < kBlock && (turn_ > 0 || !loops_.empty()); ++i) { // further calls in loops, further rays of a call
         if (next_.site[i] < 0) continue;
         const Site& s = sites_[size_t(next_.site[i])];
-        if (const uint32_t before = s.occurrenceAt(b * kBlock + size_t(i)))
-            next_.vertex[i] = childVertex(v.vertex[i], uint32_t(s.number), before * 4096);
+        if (const uint32_t before = s.occurrenceAt(b * kBlock + size_t(i)) * 4096 + turn_)
+            next_.vertex[i] = childVertex(v.vertex[i], uint32_t(s.number), before);
     }
     if (roulette_ == Roulette::None || (!waits_ && std::all_of(v.bounces, v.bounces + kBlock, [](int32_t n) { return n < 3; }))) {
         std::fill_n(next_.dice, kBlock, 0.f);

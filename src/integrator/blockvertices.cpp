@@ -34,9 +34,9 @@ BlockVertices::BlockVertices(const StageSet& s)
       vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
-    const bool rules = rules_.pickOne && rules_.lightsAtRequests && !set.lightOnly && set.indirect;
+    const bool rules = rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && !world_.traceSubsets_ && !world_.globalMaps_ && !world_.shadesAtOpen_;
+    usable_ = set.blocks && rules && lights && !world_.traceSubsets_ && !world_.globalMaps_;
     usable_ &= world_.accel_ != nullptr; // requires a complete world
     guided_ = std::make_unique<Guided>(*this, s.guide);
     if (!usable_) return;
@@ -65,10 +65,10 @@ bool BlockVertices::takes(const BatchContext& c) const {
 /// Whether blocks can process all lobes that the kernel has requested at the points of the batch, with a weight that is not 0.
 bool BlockVertices::asksBlocks(const BatchContext& c) {
     const BoundKernel& kernel = *c.bound;
-    if (kernel.blocks || !kernel.path || kernel.kernel->facts().suspends) return kernel.blocks;
+    if (kernel.blocks || kernel.kernel->facts().suspends) return kernel.blocks;
     return std::all_of(c.emits.begin(), c.emits.end(), [&](const EmitRecord& e) {
         const SiteInfo& s = kernel.sites[size_t(e.site)];
-        if (s.block || !asksLobes(s.kind)) return true;
+        if (s.block || !asksLobes(s.kind) || !isRequest(s.kind, kernel.path)) return true;
         const float* weight = c.arena.data() + e.offset;
         for (uint64_t left = e.mask; left; left &= left - 1)
             for (int q = 0, lane = std::countr_zero(left); q < 3; ++q)
@@ -78,7 +78,7 @@ bool BlockVertices::asksBlocks(const BatchContext& c) {
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
-    return usable_ && kernel.blocks && plain_[size_t(b.lightList)];
+    return usable_ && rules_.pickOne && kernel.blocks && plain_[size_t(b.lightList)];
 }
 
 bool BlockVertices::run(BatchContext& c, Sched& sched) { return c.emits.empty() || follow(c, sched, false); }
@@ -140,10 +140,10 @@ void BlockVertices::takeRays(const RayBlock& rays, bool between) {
     }
     v.deep[0] = v.deep[1] = v.last;
     for (int k = 0; k < kBlock; ++k) {
-        const auto* sample = reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][k]) << 32 | rays.sample[0][k]);
-        v.low[k] = sample->numbers.low();
-        v.high[k] = sample->numbers.high();
-        v.index[k] = sample->numbers.index();
+        const PathSample& sample = sampleOf(rays, k);
+        v.low[k] = sample.numbers.low();
+        v.high[k] = sample.numbers.high();
+        v.index[k] = sample.numbers.index();
     }
     v.waits = waits_;
     for (int q = 0; q < 3; ++q) std::copy_n(waits_ ? whole_ : rays.weight[q], kBlock, v.weight[q]); // relative to its target
@@ -350,7 +350,7 @@ void BlockVertices::prepare() {
 }
 
 bool BlockVertices::select(const BatchContext& c) {
-    SelectRules rules{0, world_.settings_.unbiased, 0, 0};
+    SelectRules rules{0, world_.settings_.unbiased, 0, !rules_.pickOne, 0};
     for (size_t k = 0; k < count_; ++k) {
         rules.lighting |= uint32_t(sites_[k].lighting) << k;
         rules.diffuse |= uint32_t(sites_[k].diffuse) << k;

@@ -114,6 +114,7 @@ private:
     Vec3 originOf(const Site&, size_t point, const Vec3& w) const;
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
+    void scatterAll(size_t block, BatchContext&, Sched&);
     void drawDirections(size_t block);
     void throwDice(size_t block);
     void sendRays(size_t block, BatchContext&, Sched&);

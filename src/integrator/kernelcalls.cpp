@@ -2,6 +2,7 @@
 #include "base/memory.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/vertex.h"
+#include "world/blocksite.h"
 #include <bit>
 
 namespace alpenglow::integrator {

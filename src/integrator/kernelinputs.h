@@ -9,13 +9,6 @@ namespace alpenglow::integrator {
 
 struct StageSet;
 
-/// Whether a call only records a request: trace() and transmission() always do; lobe shadeops only if the integrator estimates
-/// them (`path`).
-inline bool isRequest(SiteKind k, bool path) {
-    return k == SiteKind::Trace || k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Subsurface ||
-           k == SiteKind::Gather || (path && k >= SiteKind::Ambient && k <= SiteKind::LightVisibility);
-}
-
 class KernelInputs final : Stage {
 public:
     explicit KernelInputs(const StageSet&);

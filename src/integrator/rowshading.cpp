@@ -17,6 +17,7 @@
 #include "integrator/surfacepoints.h"
 #include "integrator/surfaceshading.h"
 #include "integrator/transparency.h"
+#include "world/blocksite.h"
 #include <algorithm>
 
 namespace alpenglow::integrator {

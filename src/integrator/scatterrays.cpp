@@ -212,7 +212,7 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     RayExtra extra;
     extra.indirect = (l.lobeOfShader && l.below < 0 ? selection_.indirectScale[size_t(s.point)] : 1) * l.indirect;
     const float scale = photon ? s.scale * std::exchange(extra.indirect, 1.f) : s.scale;
-    const Color through = l.narrow && photon ? s.back : l.weight * (f * scale / float(s.count));
+    const Color through = l.narrow && photon ? s.back : l.weight * (f * (scale / float(s.count)));
     if (!photon && l.trace && l.trace->map) extra.environment = l.tint * requests_.mapTowards(*l.trace, w, from.footprint.spread);
     if (TraceSums* of = !photon && l.trace && l.trace->sums ? accumulator_.sumsOf(l.target) : nullptr)
         connection_.unshadowed(l, w, through, extra.environment, *of);

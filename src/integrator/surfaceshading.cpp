@@ -163,7 +163,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     }
     if (aside.empty() && blocks_.takes(*c)) {
         c->opaque = isOpaque(*c->batch);
-        if (!c->opaque) transparency_.tellClear(*c);
+        if (!c->opaque && rules_.pickOne) transparency_.tellClear(*c);
         if (blocks_.run(*c, sched)) {
             counters_.inBlocks += uint64_t(n);
             requests_.requestPairs(*c, nullptr, sched, false);

@@ -13,6 +13,10 @@ protected:
     using Site = BlockLobes; ///< a call site of the kernel
     VertexBlocks();
     std::span<LobeBlock*> lobesOf(size_t block);
+    /// The camera sample of a ray.
+    static const PathSample& sampleOf(const RayBlock& rays, int lane) {
+        return *reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][lane]) << 32 | rays.sample[0][lane]);
+    }
     /// Factor of the light of surfaces that the ray of a lobe carries, without the energy rule.
     float indirectOf(const Site& s, size_t point) const {
         if (s.direct || (s.lighting && s.diffuse && !apart_.empty() && (apart_[point / kBlock] >> point % kBlock & 1))) return 0;
@@ -46,6 +50,7 @@ protected:
     std::vector<float> lamp_;         ///< LightRows of these blocks
     std::vector<BlockPlaced> placed_; ///< by litBlocks_
     ScatterBlock next_{};
+    uint32_t turn_ = 0; ///< if all lobes are followed: which ray of each lobe
     ShadowBlock shadow_{};
     int32_t sent_[kBlock];  ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
     alignas(64) Row whole_; ///< all ones

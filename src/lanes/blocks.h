@@ -141,6 +141,7 @@ struct SelectRules {
     uint32_t lighting = 0; ///< bit i: site i is a lighting shadeop
     bool unbiased = false; ///< disables the energy rule
     uint32_t diffuse = 0;  ///< bit i: rays of site i are diffuse
+    bool all = false;      ///< each lobe is followed, with probability 1, instead of one of them
     uint32_t endless = 0;  ///< bit i: depth limits do not end the rays of site i
 };
 /// Further results of select(): points whose reflectance exceeds 1, alone or with transparency; points with probabilities that

@@ -147,6 +147,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
             const vm whole = __builtin_convertvector(total == c, vi), none = __builtin_convertvector(~(total > 0), vi);
             share = select(alone, share, select(none, vf(0), select(whole, vf(1), __builtin_convertvector(c / total, vf))));
         }
+        if (rules.all) share = select(chosen > 0, vf(1), vf(0));
         if (v.waits) share = select(maskFrom(l.asked & ~deepOf(v, rules, s), at), vf(1), vf(0));
         store(l.chosen + at, share);
     }

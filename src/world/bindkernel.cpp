@@ -430,7 +430,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
             i.occlusion = occlusionSite(i, s);
             i.trace = traceSite(i, s, *k, world);
         }
-        if (path) i.block = blockSite(i);
+        i.block = blockSite(i, path);
         b.sites.push_back(std::move(i));
     }
     linkGathers(b, *k, world);

@@ -41,7 +41,8 @@ void bindDistribution(const SiteInfo& s, LobeArguments& a) {
 }
 } // namespace
 
-std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
+std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s, bool path) {
+    if (!path && (s.kind != SiteKind::Trace || s.rowLights >= 0)) return nullptr; // each ray would sample lights
     if (!s.lobe || (s.lobe->distribution && s.kind != SiteKind::Trace)) return nullptr;
     LobeArguments a;
     a.needsWo = (lobeLanes(1).lobes[s.lobe->index].needs & kNeedsWo) != 0;
@@ -81,9 +82,9 @@ std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s) {
 }
 
 bool asksBlocks(const BoundKernel& b) {
-    if (!b.path || b.kernel->facts().suspends) return false;
+    if (b.kernel->facts().suspends) return false;
     for (const SiteInfo& s : b.sites)
-        if (asksLobes(s.kind) && !s.block) return false;
+        if (asksLobes(s.kind) && isRequest(s.kind, b.path) && !s.block) return false;
     return true;
 }
 

@@ -16,9 +16,13 @@ struct Traced {
     std::vector<SampleResult> samples;
     uint64_t inBlocks, points, cut;
 };
-Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = {}) {
-    s.maxDepth = maxDepth;
+Settings pathSettings() {
+    Settings s;
     s.hider = Hider::Path;
+    return s;
+}
+Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = pathSettings()) {
+    s.maxDepth = maxDepth;
     s.blocks = blocks;
     s.lanes = lanes;
     Scene scene(rib, s);
@@ -235,7 +239,7 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
     Ci = .8 * soft + sheen;
 })");
     writeFacets();
-    Settings local, first, paths, outputs;
+    Settings local = pathSettings(), first = local, paths = local, outputs = local;
     local.localRoulette = first.firstSeen = true;
     Diagnostics d;
     paths.lightPaths = std::make_shared<scene::LightPaths>(
@@ -246,7 +250,7 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
     const std::string bumpy = "Attribute \"displacementbound\" \"float sphere\" .1\nDisplacement \"bumpy\"\n";
     const std::string inside = "Interior \"medium\" \"color scattering\" [0 0 0] \"color absorption\" [.2 .5 .3]\n";
     const std::string fog = "Atmosphere \"fog\" \"distance\" 9 \"background\" [.3 .2 .1]\n";
-    for (const Settings& s : {Settings(), local, first, paths, outputs})
+    for (const Settings& s : {pathSettings(), local, first, paths, outputs})
         for (const std::string& more :
              {std::string(), fog, fog + "Opacity .5 .6 .7\n", inside + "Opacity .5 .6 .7\n", bumpy, manyLights(6)})
             for (const char* shader : {"\"apart\"", "\"facets\""}) {
@@ -274,13 +278,13 @@ TEST(Blocks, AreFollowedThroughFog) {
         "AttributeEnd\n";
     const std::string biased = "Attribute \"trace\" \"bias\" .01\n";
     Diagnostics d;
-    Settings paths, local, byDistance;
+    Settings paths = pathSettings(), local = paths, byDistance = paths;
     paths.lightPaths = std::make_shared<scene::LightPaths>(
         std::vector<scene::LightPaths::Source>{{"C<RD>L", {}}, {"CV.*[LO]", {}}, {"C.*<RD>.+L", {}}}, d);
     ASSERT_EQ(d.all().size(), 0u);
     local.localRoulette = true;
     byDistance.mediumSampling = MediumSampling::Distance;
-    for (const Settings& s : {Settings(), paths, local, byDistance})
+    for (const Settings& s : {pathSettings(), paths, local, byDistance})
         for (const std::string& more :
              {fog(""), fog("") + milk + "Opacity .5 .6 .7\n", biased + fog(""), fog("") + manyLights(6)})
             for (const char* shader : {"\"matte\"", "\"plastic\""})
@@ -375,11 +379,11 @@ TEST(Blocks, FollowLoopsAndWalksBelowSurfaces) {
 })");
     const std::string sky = "LightSource \"envlight\" 9 \"intensity\" .3\n";
     const std::string shallow = "Attribute \"trace\" \"int maxdiffusedepth\" 1 \"int maxspeculardepth\" 1\n";
-    Settings local;
+    Settings local = pathSettings();
     local.localRoulette = true;
     for (const char* shader : {"\"turns\"", "\"milky\"", "\"apart2\"", "\"near\"", "\"away\""})
         for (const std::string& more : {std::string(), sky, shallow, sky + "Opacity .5 .6 .7\n"})
-            for (const Settings& s : {Settings(), local}) {
+            for (const Settings& s : {pathSettings(), local}) {
                 const std::string rib = roomOf(shader, more);
                 const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);
                 EXPECT_GT(sumOf(one), 1) << shader << more;
@@ -408,6 +412,41 @@ TEST(Blocks, SampleLightsThatFilterOverTheirSurface) {
         EXPECT_EQ(differences(one, trace(rib, true, 4)), 0u) << more;
         if (more != lamp + manyLights(6)) EXPECT_GT(all.inBlocks, all.points / 3) << more;
     }
+}
+
+TEST(Blocks, FollowAllLobesUnderOtherHiders) {
+    writeShader("several", R"(surface several() {
+    normal n = faceforward(normalize(N), I);
+    float i, some = 1 + mod(floor(9 * u), 3);
+    color sum = .3 * diffuse(n) + .2 * specular(n, -normalize(I), .2);
+    for (i = 0; i < some; i += 1)
+        sum += .1 * trace(P, reflect(normalize(I), n), "samplecone", .1 * i, "samples", 3 * some, "maxdist", 2 + i);
+    Ci = Cs * (sum + .3 * trace(P, n, "distribution", "ggx", "roughness", .3, "wo", -I) + .2 * indirectdiffuse(P, n, 5));
+    Oi = Os;
+})");
+    writeShader("waiting", R"(surface waiting() {
+    normal n = faceforward(normalize(N), I);
+    color c = trace(P, reflect(normalize(I), n));
+    Ci = comp(c, 0) > .1 ? color(1) : .5 * c + .2 * diffuse(n);
+})");
+    const std::string sky = "LightSource \"envlight\" 9 \"intensity\" .3\n", clear = "Opacity .5 .6 .7\n";
+    const std::string shallow = "Attribute \"trace\" \"int maxdiffusedepth\" 1 \"int maxspeculardepth\" 1\n";
+    const std::string fog = "Atmosphere \"fog\" \"distance\" 9 \"background\" [.3 .2 .1]\n";
+    for (const Hider hider : {Hider::Hidden, Hider::Raytrace})
+        for (const char* shader : {"\"several\"", "\"waiting\""})
+            for (const std::string& more : {sky, clear, shallow + sky, fog}) {
+                Settings s;
+                s.hider = hider;
+                s.maxDepth = 3;
+                const std::string rib = roomOf(shader, more);
+                const Traced one = trace(rib, false, 16, 3, s), all = trace(rib, true, 16, 3, s);
+                EXPECT_GT(sumOf(one), 1) << shader << more;
+                EXPECT_EQ(one.inBlocks, 0u);
+                EXPECT_GT(all.inBlocks, all.points / 4) << shader << more << int(hider);
+                EXPECT_EQ(differences(one, all), 0u) << shader << more << int(hider);
+                EXPECT_EQ(differences(one, trace(rib, true, 4, 3, s)), 0u) << shader << more << int(hider);
+                EXPECT_EQ(one.cut, all.cut) << shader << more << int(hider);
+            }
 }
 
 TEST(Blocks, LookPicturesUpAndKnowHowLargePointsAre) {

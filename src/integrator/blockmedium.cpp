@@ -18,7 +18,7 @@ bool BlockVertices::needsPoints(const SurfaceBinding& b) const {
 
 bool BlockVertices::run(BatchContext& c, const Homogeneous& h, std::span<const Vec3> beside, Sched& sched) {
     const SurfaceBinding& b = *c.binding;
-    const bool plain = usable_ && rules_.pickOne && plain_[size_t(b.lightList)] && !b.matte;
+    const bool plain = usable_ && rules_.pickOne && plain_[size_t(b.lightList)];
     if (!plain || photons_.photonTrace() || !takesRays(c)) return false;
     begin(c, false);
     loadVertices(c);

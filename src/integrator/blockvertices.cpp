@@ -174,7 +174,8 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
         const size_t i = first + std::min(k, n - 1); // repeats the last point
         const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
         const geometry::SurfacePoint& p = rows ? c.surfaces[i] : c.points[i].surface;
-        if (s.matte || !(rows || c.points[i].P == p.P)) return false;
+        if (!(rows || c.points[i].P == p.P)) return false;
+        if (s.matte && c.rays[i].camera()) v.points &= ~(1u << k);
         endRays(b, int(k), s, false);
         for (int q = 0; q < 3; ++q) {
             v.P[q][k] = p.P[q];

@@ -325,7 +325,8 @@ TEST(Blocks, FollowLobesToTheDepthsOfTheirSurfaces) {
     const std::string sky = "LightSource \"envlight\" 9 \"intensity\" .3\n", clear = "Opacity .5 .6 .7\n";
     const std::string fog = "AttributeBegin\nSurface \"null\" Interior \"medium\" \"color scattering\" [.1 .12 .2]\n"
                             "Translate 0 0 5\nSphere 7.5 -7.5 7.5 360\nAttributeEnd\n";
-    for (const std::string& more : {sky, clear + sky, fog})
+    const std::string matte = "AttributeBegin\nMatte 1\nSurface \"two\"\nTranslate .3 .2 3\nSphere .5 -.5 .5 360\nAttributeEnd\n";
+    for (const std::string& more : {sky, clear + sky, fog, matte})
         for (const auto& [diffuse, specular] : {std::pair(0, 0), {1, 0}, {0, 2}, {2, -1}, {-1, 1}}) {
             const std::string rib = roomOf("\"two\"", "Attribute \"trace\" \"int maxdiffusedepth\" " + std::to_string(diffuse) +
                                                           " \"int maxspeculardepth\" " + std::to_string(specular) + "\n" + more);

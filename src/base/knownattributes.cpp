@@ -25,6 +25,7 @@ constexpr OptionDescription kAttributes[] = {
     {"Ri:Transformation", "matrix", "", "", Computed, "From object space to world space."},
     {"autoshadows:res", "", "", "", Ignored, "Aqsis; shadows are traced, or of maps that the scene makes"},
     {"autoshadows:shadowmapname", "", "", "", Ignored, "Aqsis; shadows are traced, or of maps that the scene makes"},
+    {"bound:displacement", "float", "", "", Ignored, "the example of RISpec; Attribute \"displacementbound\" says it"},
     {"caustic:maxpixeldist", "", "", "", Ignored, "BMRT; the hider path finds caustics by photons (Hider parameter caustics)"},
     {"caustic:ngather", "", "", "", Ignored, "BMRT; the hider path finds caustics by photons (Hider parameter caustics)"},
     {"caustic:refractionindex", "", "", "", Ignored, "BMRT; what bends light is what the shader says"},

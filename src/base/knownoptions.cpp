@@ -260,9 +260,11 @@ constexpr OptionDescription kDisplayParameters[] = {
 };
 
 constexpr HiderDescription kHiders[] = {
-    {"hidden", "The picture as RISpec defines it: samples are stratified and shared by neighbouring pixels, displays have "
-               "filters of their own, "
-               "shaders see the lights that they ask for. Also without a Hider request."},
+    {"hidden",
+     "The picture as RISpec defines it: samples are stratified and shared by neighbouring pixels, displays have "
+     "filters of their own, "
+     "shaders see the lights that they ask for. Also without a Hider request, and by the names paint, stochastic, zbuffer, reyes "
+     "and scanline, which other programs have."},
     {"path", "Path-traced global illumination: the same scene and the same shaders, diffuse() specular() and phong() gather the "
              "indirect light "
              "of their lobe, point and distant lights cast traced shadows, noise is measured. docs/light.md has the rules."},

@@ -88,7 +88,7 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         p.Ci = Color(0);
         return true;
     }
-    p.N = Vec3();
+    p.N = p.Ns; // a light without area has no normal of its own
     p.P = originOfLight(*light.instance, p.shutter);
     p.Ci = light.cone && path ? coneNumbers(u.pair) : Color(0);
     return true;

@@ -19,6 +19,8 @@
 #include "render/rendering.h"
 #include "render/watcher.h"
 #include "world/bakes.h"
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <tbb/global_control.h>
 
@@ -64,7 +66,9 @@ Reconstructions noImages(const Job& job) {
 Hider hiderOf(const scene::Options& o, Diagnostics& diags) {
     if (o.hider == "path" || o.hider == "photon") return Hider::Path;
     if (o.hider == "raytrace") return Hider::Raytrace;
-    if (o.hider != "hidden" && !o.hider.empty())
+    // What others call theirs: the painter's algorithm of RISpec, Pixie's two, and those of programs that came of it.
+    constexpr std::array<std::string_view, 5> kSame = {"paint", "stochastic", "zbuffer", "reyes", "scanline"};
+    if (o.hider != "hidden" && !o.hider.empty() && std::find(kSame.begin(), kSame.end(), o.hider) == kSame.end())
         diags.report(Severity::Error, Rie::Incapable, o.hiderPlace, "there is no hider \"" + o.hider + "\": \"hidden\" is used",
                      "the hiders are hidden, path, photon and raytrace");
     return Hider::Hidden;

@@ -264,7 +264,7 @@ color NAME(shader handle;LIGHTS output color diffuseresult; output color specula
 
 constexpr const char* kSpecularText = R"(
 color indirectspecular(shader handle; float bias; float maxdist; uniform string label; uniform string subset;
-                       uniform string hitmode; uniform string hitsides) {
+                       uniform string hitmode; uniform string hitsides; float samplebase; uniform string integrationdomain) {
     extern point P;
     vector direction[];
     float distance[], materialPdf[], lightPdf[], summedPdf[];
@@ -280,6 +280,18 @@ color indirectspecular(shader handle; float bias; float maxdist; uniform string 
     return sum;
 }
 )";
+
+/// The parameters of the rays of indirectspecular().
+std::vector<OptionalParameter> specularParameters() {
+    return {{kF, "bias", false, "-1", "offset of the start of the rays"},
+            {kF, "maxdist", false, "1e38", "no intersections beyond it"},
+            {kS, "label", false, "\"\"", "label of the rays, for rayinfo()"},
+            {kS, "subset", false, "\"\"", "groups of objects considered"},
+            {kS, "hitmode", false, "\"default\"", "primitive, shader or default"},
+            {kS, "hitsides", false, "\"\"", "front, back, both or reversed"},
+            {kF, "samplebase", false, "0", "accepted and ignored: rays start at the point"},
+            {kS, "integrationdomain", false, "\"\"", "accepted and ignored: the samples say where rays go"}};
+}
 
 } // namespace
 
@@ -408,12 +420,7 @@ std::vector<Shadeop> radianceSampleShadeops() {
                             "object gives, by trace(): the mean of materialResponse "
                             "over materialPdf times what arrives from there. `this`, or any handle.");
     specular.contexts = kSurface;
-    specular.optional = {{kF, "bias", false, "-1", "offset of the start of the rays"},
-                         {kF, "maxdist", false, "1e38", "no intersections beyond it"},
-                         {kS, "label", false, "\"\"", "label of the rays, for rayinfo()"},
-                         {kS, "subset", false, "\"\"", "groups of objects considered"},
-                         {kS, "hitmode", false, "\"default\"", "primitive, shader or default"},
-                         {kS, "hitsides", false, "\"\"", "front, back, both or reversed"}};
+    specular.optional = specularParameters();
     specular.examples = {{"indirectspecular(getshader(\"none\"))", "0 0 0"}};
     return list;
 }

@@ -191,6 +191,11 @@ TEST_F(Flags, SmallTruths) {
     run("render -q -o h.png h.rib");
     EXPECT_TRUE(says("h.rib:2:1: error: there is no hider \"pathtrace\": \"hidden\" is used")) << errors();
     EXPECT_TRUE(says("the hiders are hidden, path, photon and raytrace")) << errors();
+    for (const char* same : {"paint", "stochastic", "zbuffer", "reyes", "scanline"}) { // names that other programs have for it
+        write("h.rib", std::string("Format 8 8 1\nHider \"") + same + "\"\n" + kScene);
+        run("render -q -o h.png h.rib");
+        EXPECT_EQ(status, 0) << same << ": " << errors();
+    }
     const std::string moving = "MotionBegin [0 1]\nTranslate 0 0 5\nTranslate 1 0 5\nMotionEnd\n";
     write("c.rib", "Format 8 8 1\nShutter 0 1\n" + moving + "WorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
     run("render --progress none -o c.png c.rib");

@@ -43,6 +43,21 @@ TEST(PublishedLights, GeometricNormalOfTheLitPoint) {
     expectEverywhere(scene("LightSource \"ngs\" 1\n", "plainn"), {0, 1, 0}, "diffuse");
 }
 
+// A light without area has no normal of its own: N is that of the lit point, which PRMan's indirectlight.sl and its kin light.
+TEST(PublishedLights, NormalOfLightsWithoutArea) {
+    const std::string tells = "{ vector n = vtransform(\"world\", vector(normalize(N))); "
+                              "Cl = color(abs(xcomp(n)), abs(ycomp(n)), abs(zcomp(n))) + color(0, 1, 0); }";
+    writeShader("nabove", "light nabove() { illuminate(Ps + normalize(N)) " + tells + " }\n");
+    writeShader("npoint", "light npoint() { illuminate(point \"world\" (0, 2, 0)) " + tells + " }\n");
+    writeShader("nsolar", "light nsolar() { solar(vector \"world\" (0, -1, 0), 0) " + tells + " }\n");
+    writeShader("allofn", "surface allofn() { Oi = 1; Ci = 0; illuminance(P, shadingnormal(N), PI / 2) Ci += Cl; }\n");
+    writeShader("diffusen", "surface diffusen() { Oi = 1; Ci = diffuse(faceforward(normalize(N), I)); }\n");
+    for (const char* light : {"nabove", "npoint", "nsolar"})
+        for (const char* surface : {"allofn", "diffusen"})
+            expectEverywhere(scene(std::string("LightSource \"") + light + "\" 1\n", surface), {0, 2, 0},
+                             std::string(light) + ", " + surface);
+}
+
 // The lights of the surface that is lit, with itself; those that are off for it are not there.
 TEST(PublishedLights, LightsOfTheLitSurface) {
     writeShader("lamp", "light lamp(float c = 1; string __category = \"\";) { illuminate(point \"world\" (0, 2, 0)) Cl = c; }\n");

@@ -177,6 +177,27 @@ TEST(CoShaders, ErrorsHaveTheirPlaces) {
               std::string::npos);
 }
 
+/// A handle that is known only when the shader runs may stand for an object without the method, if the call is not reached.
+TEST(CoShaders, AMethodThatNobodyHasIsSaidWhereItIsReached) {
+    const auto asking = [](const char* kind, std::vector<float>& values) {
+        Diagnostics d;
+        values = shade(std::string("shader all[] = getshaders(); float kind = ") + kind +
+                           "; uniform float i; for (i = 0; i < arraylength(all); i += 1) {"
+                           " if (kind < u - 1) n += all[i]->none(1); else x += all[i]->gain; } y = 5;",
+                       {"x", "y", "n"}, d);
+        std::string said;
+        for (const auto& m : d.all()) said += m.message + "\n";
+        return said;
+    };
+    std::vector<float> values;
+    EXPECT_EQ(asking("0", values), "");
+    EXPECT_EQ(values, (Values{12, 5, 0}));
+    const std::string said = asking("-9", values);
+    EXPECT_EQ(values, (Values{0, 5, 0}));
+    EXPECT_NE(said.find("co-shader 'a' (layer) has no public method 'none' with 1 argument"), std::string::npos) << said;
+    EXPECT_NE(said.find("the call does nothing"), std::string::npos) << said;
+}
+
 /// What a chain of n co-shaders gives, each of which calls the next.
 std::string chain(int n, float& value) {
     ShaderCompiler::Settings settings;

@@ -125,7 +125,11 @@ void trimCurve(Interpreter& in, const Call& c) {
     good = good && c.numbers(2).size() == knots && c.numbers(6).size() == points && c.numbers(7).size() == points &&
            c.numbers(8).size() == points;
     if (!good) {
-        in.reporter.error(Rie::Consistency, c.place, "TrimCurve: the lengths of its arrays do not fit each other");
+        std::string sums; // known where the arrays before them fit
+        if (points > 0)
+            sums = fmt::format(": {} knots, and n + order of its curves is {}; {} u, {} v and {} w, and n of its curves is {}",
+                               c.numbers(2).size(), knots, c.numbers(6).size(), c.numbers(7).size(), c.numbers(8).size(), points);
+        in.reporter.error(Rie::Consistency, c.place, "TrimCurve: the lengths of its arrays do not fit each other" + sums);
         return;
     }
     auto list = std::make_shared<scene::ParamList>();

@@ -59,7 +59,7 @@ constexpr GlobalVariable kDisplacementOwn[] = {
     {"Cs", kC, V, R, "colour of the primitive"},   {"Os", kC, V, R, "opacity of the primitive"},
     {"I", kV, V, R, "from the viewing point to P"}};
 constexpr GlobalVariable kLightOwn[] = {{"P", kP, V, R, "position on the light"},
-                                        {"N", kN, V, R, "normal of the area light"},
+                                        {"N", kN, V, R, "normal of the area light; without area that of the lit surface"},
                                         {"s", kF, V, R, "texture coordinate"},
                                         {"t", kF, V, R, "texture coordinate"},
                                         {"L", kV, V, W, "from the light to the surface; in illuminate and solar"},

@@ -15,8 +15,31 @@ struct BuiltIn {
 // __radiancesample: a direction with what a light sends from there and what a surface makes of it.
 // normalizeMaterialResponse: of samples of several lobes, so many of each, one mean is taken over all; each lobe counts in full
 // then. accumulateMaterialResponse: the lobes of evaluateSamples() one after the other, each with a call of it, add up. What
-// names another stands before it.
-constexpr BuiltIn kBuiltIns[] = {{"normalizeMaterialResponse", R"(
+// names another stands before it. raydepth, raylabel, clearlighting: of Pixie; nothing is kept of lights that could be cleared.
+constexpr BuiltIn kBuiltIns[] = {{"sincos", R"(
+void sincos(float angle; output float sine, cosine) {
+    sine = sin(angle);
+    cosine = cos(angle);
+}
+)"},
+                                 {"raydepth", R"(
+float raydepth() {
+    float depth = 0;
+    rayinfo("depth", depth);
+    return depth;
+}
+)"},
+                                 {"raylabel", R"(
+string raylabel() {
+    string label = "";
+    rayinfo("label", label);
+    return label;
+}
+)"},
+                                 {"clearlighting", R"(
+void clearlighting() {}
+)"},
+                                 {"normalizeMaterialResponse", R"(
 void normalizeMaterialResponse(output __radiancesample samples[]; uniform float counts[]) {
     uniform float lobes = arraylength(counts), n = arraylength(samples), first = 0, lobe, i;
     for (lobe = 0; lobe < lobes; lobe += 1) {
@@ -95,6 +118,11 @@ struct __radiancesample {
         distance = dist;
     }
     public void setLightRadiance(varying color light; varying float pdf) { radiance = light; lightPdf = pdf; }
+    public void setLightSample(varying color light; varying float pdf; varying vector dir; varying float dist) {
+        setLightRadiance(light, pdf);
+        direction = dir;
+        distance = dist;
+    }
 }
 )"}};
 
@@ -105,7 +133,10 @@ void addPrelude(SourceSet& sources, Preprocessed& p) {
         bool named = false, defined = false;
         for (size_t i = 0; i < p.tokens.size(); ++i) {
             if (p.tokens[i].kind != Tok::Identifier || p.tokens[i].text != b.name) continue;
-            named = true;
+            const bool called = i + 1 < p.tokens.size() && p.tokens[i + 1].is("("); // or defined; variables may have the name
+            const size_t next = called ? behind(p.tokens, i + 1) : p.tokens.size();
+            named |= called || std::string_view(b.text).find("struct") != std::string_view::npos;
+            defined |= next < p.tokens.size() && p.tokens[next].is("{");
             defined |= i > 0 && (p.tokens[i - 1].is("struct") || p.tokens[i - 1].is("void"));
         }
         if (!named || defined) continue;

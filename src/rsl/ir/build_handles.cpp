@@ -272,22 +272,15 @@ Inst* Builder::methodCall(const Expr& e) {
                 (e.args.size() == 3 || (e.args.size() == 4 && e.args[3]->type == Type{Base::Color, 0})))
                 return lightMethod(e, leaves_.string(c.handle)); // with its samples and shadows
             const Function* f = methodOf(i, e);
-            if (!certain_ && isSelf(i) && (!f || !c.shader->publics.count(e.text)))
-                return zero(kind); // another shader of the handle has it
-            const auto has = [&](size_t other) {
-                return methodOf(other, e) && instances_[other].binding->shader->publics.count(e.text);
-            };
-            if (!certain_ && !has(i)) { // as long as another can be meant
-                bool another = false;
-                for (size_t n = 0; n < instances_.size(); ++n) another |= n != i && has(n);
-                if (another || c.light) {
-                    complain(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name +
-                                          ") has no public method '" + e.text + "' with " + std::to_string(e.args.size() - 1) +
-                                          " arguments; the call does nothing");
-                    return zero(kind);
-                }
+            const bool publicly = f && c.shader->publics.count(e.text);
+            if (!certain_ && isSelf(i) && !publicly) return zero(kind); // another shader of the handle has it
+            if (!certain_ && !publicly) { // who is meant shows when the shader runs, and whether the call is reached at all
+                complain(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" +
+                                      e.text + "' with " + std::to_string(e.args.size() - 1) +
+                                      " arguments; the call does nothing");
+                return zero(kind);
             }
-            if (!f || !c.shader->publics.count(e.text)) {
+            if (!publicly) {
                 error(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" +
                                    e.text + "' with " + std::to_string(e.args.size() - 1) + " arguments");
                 return zero(kind);

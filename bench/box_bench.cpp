@@ -156,44 +156,45 @@ const char* partOf(const std::string& s) {
     return "other";
 }
 
-} // namespace
-
-int main(int argc, char** argv) {
+struct BenchArguments {
     int spp = 8, repeats = 5, threads = 1, width = 320, height = 240, lanes = 16, oursOnly = 0;
+    double samples() const { return double(width) * height * spp; }
+    bool valid() const { return spp >= 1 && repeats >= 1 && threads >= 1 && width >= 1 && height >= 1; }
+};
+
+BenchArguments argumentsOf(int argc, char** argv) {
+    BenchArguments a;
     for (int i = 1; i + 1 < argc; i += 2) {
-        if (!std::strcmp(argv[i], "--spp")) spp = std::atoi(argv[i + 1]);
-        else if (!std::strcmp(argv[i], "--repeats")) repeats = std::atoi(argv[i + 1]);
-        else if (!std::strcmp(argv[i], "--threads")) threads = std::atoi(argv[i + 1]);
-        else if (!std::strcmp(argv[i], "--lanes")) lanes = std::atoi(argv[i + 1]);
-        else if (!std::strcmp(argv[i], "--ours")) oursOnly = std::atoi(argv[i + 1]);
-        else if (!std::strcmp(argv[i], "--size")) std::sscanf(argv[i + 1], "%dx%d", &width, &height);
+        if (!std::strcmp(argv[i], "--spp")) a.spp = std::atoi(argv[i + 1]);
+        else if (!std::strcmp(argv[i], "--repeats")) a.repeats = std::atoi(argv[i + 1]);
+        else if (!std::strcmp(argv[i], "--threads")) a.threads = std::atoi(argv[i + 1]);
+        else if (!std::strcmp(argv[i], "--lanes")) a.lanes = std::atoi(argv[i + 1]);
+        else if (!std::strcmp(argv[i], "--ours")) a.oursOnly = std::atoi(argv[i + 1]);
+        else if (!std::strcmp(argv[i], "--size")) std::sscanf(argv[i + 1], "%dx%d", &a.width, &a.height);
     }
-    if (spp < 1 || repeats < 1 || threads < 1 || width < 1 || height < 1) {
-        std::fprintf(stderr, "box_bench [--spp N] [--repeats N] [--threads N] [--size WxH] [--lanes N] [--ours 1]\n");
-        return 2;
-    }
-    Box box;
-    if (!box.load(width, height, threads, lanes)) {
-        for (const Diagnostic& d : box.diagnostics.all()) std::fprintf(stderr, "%s\n", toString(d).c_str());
-        return 3;
-    }
-    const double samples = double(width) * height * spp;
-    if (oursOnly) {
-        std::vector<double> t;
-        for (int i = 0; i < repeats; ++i) t.push_back(box.render(uint32_t(spp)).cpu);
-        std::printf("%.4f us a sample at the least, %.4f median\n", 1e6 * *std::min_element(t.begin(), t.end()) / samples,
-                    1e6 * median(t) / samples);
-        return 0;
-    }
+    return a;
+}
+
+/// Nothing but our own time.
+void printOurs(Box& box, const BenchArguments& a) {
+    std::vector<double> t;
+    for (int i = 0; i < a.repeats; ++i) t.push_back(box.render(uint32_t(a.spp)).cpu);
+    std::printf("%.4f us a sample at the least, %.4f median\n", 1e6 * *std::min_element(t.begin(), t.end()) / a.samples(),
+                1e6 * median(t) / a.samples());
+}
+
+/// Ours and the oracle in its forms.
+void compareWithOracle(Box& box, const BenchArguments& a) {
+    const double samples = a.samples();
     // The renderer plays roulette from the fourth hit on, by 1.5 sqrt(throughput); the oracle as it is from the sixth, by the
     // throughput. With 2 and the renderer's rule both send the same rays.
-    bench::OracleRun same{width, height, uint32_t(spp), true, 2, true}, plain{width, height, uint32_t(spp), false, 4};
+    bench::OracleRun same{a.width, a.height, uint32_t(a.spp), true, 2, true}, plain{a.width, a.height, uint32_t(a.spp), false, 4};
     std::vector<double> ours, wall, sequences, embree, twister, sums;
     double mean = 0, oracleMean = 0, embreeMean = 0;
     const bench::OracleRunner throughEmbree = bench::oracleThroughEmbree();
     Box::Result last = box.render(1);
-    for (int i = 0; i < repeats; ++i) { // in turns, so that what else the machine does hits both alike
-        last = box.render(uint32_t(spp));
+    for (int i = 0; i < a.repeats; ++i) { // in turns, so that what else the machine does hits both alike
+        last = box.render(uint32_t(a.spp));
         ours.push_back(last.cpu);
         wall.push_back(last.wall);
         mean = last.mean;
@@ -214,8 +215,8 @@ int main(int argc, char** argv) {
     };
     const integrator::Counters& c = last.counters;
     double ourRays = double(render::totalRays(c)) / samples;
-    std::printf("Muttenzer box, %d x %d, %d samples a pixel, %d threads, %d lanes; CPU time, medians of %d\n", width, height, spp,
-                threads, lanes, repeats);
+    std::printf("Muttenzer box, %d x %d, %d samples a pixel, %d threads, %d lanes; CPU time, medians of %d\n", a.width, a.height,
+                a.spp, a.threads, a.lanes, a.repeats);
     auto line = [&](const char* what, const std::vector<double>& t, double rays) {
         std::printf("  %-44s %7.3f us a sample  %8.0f samples/s  %5.2f rays a sample  %5.0f ns a ray\n", what,
                     1e6 * median(t) / samples, samples / median(t), rays, 1e9 * median(t) / samples / rays);
@@ -232,7 +233,10 @@ int main(int argc, char** argv) {
         "  means %.5f, %.5f and through Embree %.5f; wall %.3f s, %.0f rays/ms; %.1f points a batch, %.0f %% of lanes busy\n",
         mean, oracleMean, embreeMean, median(wall), double(render::totalRays(c)) / median(wall) / 1e3,
         double(c.points) / double(c.batches), 100.0 * double(c.lanesUsed) / double(c.lanesRun));
+}
 
+/// Rays of the box through our structure and through Embree alone.
+void compareRays(Box& box) {
     const accel::Accel& accel = *static_cast<const world::WorldImpl&>(*box.world).accel_;
     bench::BareEmbree bare(accel.shapes());
     for (int bounces : {0, 1, 3}) {
@@ -248,11 +252,14 @@ int main(int argc, char** argv) {
                                    : "third bounce",
                     a / 1e6, b / 1e6, a / b, met, bareMet, rays.size());
     }
+}
 
+/// Which part of the work takes how much of the time.
+void printShares(Box& box, const BenchArguments& a) {
     bench::Profile profile;
     profile.start();
     double until = cpuSeconds() + 3;
-    while (cpuSeconds() < until) box.render(uint32_t(spp));
+    while (cpuSeconds() < until) box.render(uint32_t(a.spp));
     profile.stop();
     std::map<std::string, uint64_t> parts;
     uint64_t all = 0;
@@ -268,5 +275,27 @@ int main(int argc, char** argv) {
     for (const auto& [n, part] : order)
         std::printf(" %s %.1f %%;", part.c_str(), 100.0 * double(n) / double(std::max<uint64_t>(all, 1)));
     std::printf("\n");
+}
+
+} // namespace
+
+int main(int argc, char** argv) {
+    const BenchArguments a = argumentsOf(argc, argv);
+    if (!a.valid()) {
+        std::fprintf(stderr, "box_bench [--spp N] [--repeats N] [--threads N] [--size WxH] [--lanes N] [--ours 1]\n");
+        return 2;
+    }
+    Box box;
+    if (!box.load(a.width, a.height, a.threads, a.lanes)) {
+        for (const Diagnostic& d : box.diagnostics.all()) std::fprintf(stderr, "%s\n", toString(d).c_str());
+        return 3;
+    }
+    if (a.oursOnly) {
+        printOurs(box, a);
+        return 0;
+    }
+    compareWithOracle(box, a);
+    compareRays(box);
+    printShares(box, a);
     return 0;
 }

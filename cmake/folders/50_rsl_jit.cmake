@@ -43,7 +43,7 @@ if(TARGET test_rsl_jit)
 endif()
 folder_tests(language DEPS rsl_jit)
 if(TARGET test_language) # the second evaluator, and the programs that it is asked about
-  target_sources(test_language PRIVATE ${CMAKE_SOURCE_DIR}/tests/language/walker.cpp
+  target_sources(test_language PRIVATE ${CMAKE_SOURCE_DIR}/tests/language/walker.cpp ${CMAKE_SOURCE_DIR}/tests/language/walker_values.cpp
                  ${CMAKE_SOURCE_DIR}/tests/language/walker_shadeops.cpp ${CMAKE_SOURCE_DIR}/tests/language/programs.cpp
                  ${CMAKE_SOURCE_DIR}/tests/language/programs_grammar.cpp)
   target_link_libraries(test_language PRIVATE rapidcheck)

@@ -179,56 +179,94 @@ Json LanguageServer::initialize(const Json& params) {
             {"serverInfo", {{"name", "alpenglow"}}}};
 }
 
+void LanguageServer::changed(const std::string& uri) {
+    if (std::find(changed_.begin(), changed_.end(), uri) == changed_.end()) changed_.push_back(uri);
+}
+
+void LanguageServer::includersChanged(const std::string& path) {
+    for (auto& [uri, d] : documents_) {
+        if (d.path() == path || !d.includes(path)) continue;
+        d.touch();
+        changed(uri);
+    }
+}
+
+void LanguageServer::didOpen(const Json& params) {
+    const Json& d = member(params, "textDocument");
+    const std::string uri = text(d, "uri"), path = pathOf(uri);
+    std::string content = text(d, "text");
+    const std::string language =
+        d.contains("languageId") && d["languageId"].is_string() ? d["languageId"].get<std::string>() : "";
+    if (!documents_.count(uri) && documents_.size() >= limits::kServerDocuments) {
+        pending_.push_back(notice("window/logMessage", {{"type", 1},
+                                                        {"message", "more than " + std::to_string(limits::kServerDocuments) +
+                                                                        " open texts: " + uri + " is not looked at"}}));
+        return;
+    }
+    documents_.erase(uri);
+    const auto at = documents_.emplace(uri, Document(path.empty() ? uri : path, std::move(content), language == "rib")).first;
+    changed(uri);
+    includersChanged(at->second.path());
+}
+
+void LanguageServer::didChange(const Json& params) {
+    const std::string uri = text(member(params, "textDocument"), "uri");
+    const auto at = documents_.find(uri);
+    if (at == documents_.end()) return;
+    Document& d = at->second;
+    const Json& changes = member(params, "contentChanges");
+    if (!changes.is_array()) throw BadParams{};
+    for (const Json& c : changes) {
+        std::string content = text(c, "text");
+        if (!c.contains("range")) {
+            d.set(std::move(content));
+            continue;
+        }
+        const size_t a = position(d, member(c["range"], "start")), b = position(d, member(c["range"], "end"));
+        d.replace(std::min(a, b), std::max(a, b), content);
+    }
+    changed(uri);
+    includersChanged(d.path());
+}
+
+void LanguageServer::didClose(const Json& params) {
+    const std::string uri = text(member(params, "textDocument"), "uri");
+    const auto at = documents_.find(uri);
+    if (at == documents_.end()) return;
+    const std::string path = at->second.path();
+    documents_.erase(at);
+    std::erase(changed_, uri);
+    includersChanged(path);
+    pending_.push_back(notice("textDocument/publishDiagnostics", {{"uri", uri}, {"diagnostics", Json::array()}}));
+}
+
+void LanguageServer::didRename(const Json& params) {
+    // Editors close and open what they rename; one that does not still has its text under the new name.
+    const Json& files = member(params, "files");
+    if (!files.is_array()) throw BadParams{};
+    for (const Json& file : files) {
+        const std::string from = text(file, "oldUri"), to = text(file, "newUri");
+        const auto at = documents_.find(from);
+        if (at == documents_.end() || documents_.count(to)) continue;
+        const std::string path = pathOf(to), before = at->second.path();
+        Document moved(path.empty() ? to : path, at->second.text(), at->second.rib());
+        documents_.erase(at);
+        std::erase(changed_, from);
+        documents_.emplace(to, std::move(moved));
+        pending_.push_back(notice("textDocument/publishDiagnostics", {{"uri", from}, {"diagnostics", Json::array()}}));
+        changed(to);
+        includersChanged(before);
+        includersChanged(path);
+    }
+}
+
 void LanguageServer::notification(const std::string& method, const Json& params) {
     if (method == "exit") {
         ended_ = true;
-        return;
-    }
-    const auto changed = [&](const std::string& uri) {
-        if (std::find(changed_.begin(), changed_.end(), uri) == changed_.end()) changed_.push_back(uri);
-    };
-    // What includes a text that is open sees what the editor shows, not what the disk has.
-    const auto includers = [&](const std::string& path) {
-        for (auto& [uri, d] : documents_) {
-            if (d.path() == path || !d.includes(path)) continue;
-            d.touch();
-            changed(uri);
-        }
-    };
-    if (method == "textDocument/didOpen") {
-        const Json& d = member(params, "textDocument");
-        const std::string uri = text(d, "uri"), path = pathOf(uri);
-        std::string content = text(d, "text");
-        const std::string language =
-            d.contains("languageId") && d["languageId"].is_string() ? d["languageId"].get<std::string>() : "";
-        if (!documents_.count(uri) && documents_.size() >= limits::kServerDocuments) {
-            pending_.push_back(notice("window/logMessage", {{"type", 1},
-                                                            {"message", "more than " + std::to_string(limits::kServerDocuments) +
-                                                                            " open texts: " + uri + " is not looked at"}}));
-            return;
-        }
-        documents_.erase(uri);
-        const auto at = documents_.emplace(uri, Document(path.empty() ? uri : path, std::move(content), language == "rib")).first;
-        changed(uri);
-        includers(at->second.path());
+    } else if (method == "textDocument/didOpen") {
+        didOpen(params);
     } else if (method == "textDocument/didChange") {
-        const std::string uri = text(member(params, "textDocument"), "uri");
-        const auto at = documents_.find(uri);
-        if (at == documents_.end()) return;
-        Document& d = at->second;
-        const Json& changes = member(params, "contentChanges");
-        if (!changes.is_array()) throw BadParams{};
-        for (const Json& c : changes) {
-            std::string content = text(c, "text");
-            if (!c.contains("range")) {
-                d.set(std::move(content));
-                continue;
-            }
-            const size_t a = position(d, member(c["range"], "start")), b = position(d, member(c["range"], "end"));
-            d.replace(std::min(a, b), std::max(a, b), content);
-        }
-        changed(uri);
-        includers(d.path());
+        didChange(params);
     } else if (method == "textDocument/didSave") {
         // The saved file may be an include of the others: they are checked again.
         for (auto& [uri, d] : documents_) {
@@ -236,32 +274,9 @@ void LanguageServer::notification(const std::string& method, const Json& params)
             changed(uri);
         }
     } else if (method == "textDocument/didClose") {
-        const std::string uri = text(member(params, "textDocument"), "uri");
-        const auto at = documents_.find(uri);
-        if (at == documents_.end()) return;
-        const std::string path = at->second.path();
-        documents_.erase(at);
-        std::erase(changed_, uri);
-        includers(path);
-        pending_.push_back(notice("textDocument/publishDiagnostics", {{"uri", uri}, {"diagnostics", Json::array()}}));
+        didClose(params);
     } else if (method == "workspace/didRenameFiles") {
-        // Editors close and open what they rename; one that does not still has its text under the new name.
-        const Json& files = member(params, "files");
-        if (!files.is_array()) throw BadParams{};
-        for (const Json& file : files) {
-            const std::string from = text(file, "oldUri"), to = text(file, "newUri");
-            const auto at = documents_.find(from);
-            if (at == documents_.end() || documents_.count(to)) continue;
-            const std::string path = pathOf(to), before = at->second.path();
-            Document moved(path.empty() ? to : path, at->second.text(), at->second.rib());
-            documents_.erase(at);
-            std::erase(changed_, from);
-            documents_.emplace(to, std::move(moved));
-            pending_.push_back(notice("textDocument/publishDiagnostics", {{"uri", from}, {"diagnostics", Json::array()}}));
-            changed(to);
-            includers(before);
-            includers(path);
-        }
+        didRename(params);
     }
 }
 

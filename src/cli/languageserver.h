@@ -29,6 +29,14 @@ public:
 private:
     Json request(const std::string& method, const Json& params);
     void notification(const std::string& method, const Json& params);
+    void didOpen(const Json& params);
+    void didChange(const Json& params);
+    void didClose(const Json& params);
+    void didRename(const Json& params);
+    /// A text is to be checked again.
+    void changed(const std::string& uri);
+    /// The same of what includes a text that is open: it sees what the editor shows, not what the disk has.
+    void includersChanged(const std::string& path);
 
     Json initialize(const Json& params);
     Json completion(const Json& params);

@@ -15,6 +15,7 @@
 #include "scene/scene.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <memory>
 #include <mutex>
@@ -63,14 +64,22 @@ struct ProbeArguments {
     std::vector<std::string> searchPaths;
 };
 
-/// found: what --json prints.
-int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& found) {
+/// A point and its normal, world space.
+struct ProbedPoint {
+    Vec3d P, N;
+};
+
+ProbedPoint pointOf(const ProbeArguments& a) {
     auto p = parseNumbers(a.point, 3), n = parseNumbers(a.normal, 3);
     if (!p) throw CLI::ValidationError("point", "takes X,Y,Z in world space");
     if (!n) throw CLI::ValidationError("normal", "takes NX,NY,NZ in world space");
     Vec3d P((*p)[0], (*p)[1], (*p)[2]), N((*n)[0], (*n)[1], (*n)[2]);
     if (!(length(N) > 0)) throw CLI::ValidationError("normal", "must not be zero");
-    N = normalize(N);
+    return {P, normalize(N)};
+}
+
+/// The last frame of the scene, for path tracing. Null after an error.
+std::shared_ptr<scene::Frame> frameToProbe(const ProbeArguments& a, Diagnostics& diags) {
     Keeper keeper;
     ri::ReaderOptions options;
     options.searchPaths = folders(a.searchPaths);
@@ -78,22 +87,46 @@ int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& f
     ri::RibReader(options, keeper, diags).readFile(a.scene);
     if (!keeper.frame) {
         diags.report(Severity::Error, Rie::MissingData, {a.scene}, "there is no world in it");
-        return kNothingRendered;
+        return nullptr;
     }
     auto frame = std::make_shared<scene::Frame>(*keeper.frame);
     frame->options.hider = "path";
     frame->options.imager = nullptr;
+    return frame;
+}
 
-    const Matrix& toCamera = frame->options.worldToCamera.first();
-    double extent = extentFrom(*frame, P), radius = a.radius > 0 ? a.radius : extent / 400, size = 1.01 * radius;
+/// The ring that rays meet, on a quad above the point. World space.
+struct Ring {
+    Vec3d centre, normal, u, v;
+    double radius = 0; ///< the outer; the inner is half of it
+    double above = 0;  ///< from the point to the quad, and from there to where the rays begin
+    /// A point where a ray begins, evenly over the ring's area.
+    Vec3d begin(const Vec2& random) const {
+        const double r = radius * std::sqrt(0.25 + 0.75 * random.x), phi = 2 * kPi * random.y;
+        return centre + normal * above + u * (r * std::cos(phi)) + v * (r * std::sin(phi));
+    }
+};
+
+Ring ringAbout(const ProbedPoint& p, const scene::Frame& frame, double radius) {
+    const Matrix& toCamera = frame.options.worldToCamera.first();
+    const double extent = extentFrom(frame, p.P);
+    Ring r;
+    r.radius = radius > 0 ? radius : extent / 400;
     // A few times the rounding of the largest coordinate, so that the surface itself stays below.
-    double above = 0x1p-20 * std::max({extent, length(P), length(transformPoint(toCamera, P))});
-    Vec3d helper = std::fabs(N.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0);
-    Vec3d u = normalize(cross(helper, N)), v = cross(N, u), C = P + N * above;
+    r.above = 0x1p-20 * std::max({extent, length(p.P), length(transformPoint(toCamera, p.P))});
+    r.normal = p.N;
+    r.u = normalize(cross(std::fabs(p.N.x) < 0.5 ? Vec3d(1, 0, 0) : Vec3d(0, 1, 0), p.N));
+    r.v = cross(p.N, r.u);
+    r.centre = p.P + p.N * r.above;
+    return r;
+}
+
+/// White and diffuse, lit by all lights of the frame, seen by camera rays only.
+std::shared_ptr<scene::Attributes> whiteAttributes(const scene::Frame& frame) {
     auto attributes = std::make_shared<scene::Attributes>();
     std::set<int> lights;
-    for (const auto& q : frame->primitives) lights.insert(q->attributes->lights.begin(), q->attributes->lights.end());
-    for (const auto& i : frame->instances)
+    for (const auto& q : frame.primitives) lights.insert(q->attributes->lights.begin(), q->attributes->lights.end());
+    for (const auto& i : frame.instances)
         if (i.attributes) lights.insert(i.attributes->lights.begin(), i.attributes->lights.end());
     attributes->lights = scene::LightSet(std::vector<int>(lights.begin(), lights.end()));
     auto shader = std::make_shared<scene::ShaderCall>();
@@ -114,20 +147,28 @@ int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& f
     };
     visible("camera", 1);
     for (const char* ray : {"diffuse", "specular", "transmission", "trace", "photon"}) visible(ray, 0);
+    return attributes;
+}
+
+/// The quad that holds the ring.
+std::shared_ptr<scene::Primitive> quadUnder(const Ring& ring, std::shared_ptr<scene::Attributes> attributes) {
     auto quad = std::make_shared<scene::Primitive>();
     quad->kind = "Polygon";
-    quad->attributes = attributes;
+    quad->attributes = std::move(attributes);
     scene::Param points;
     points.name = "P";
     points.cls = scene::Class::Vertex;
     points.type = scene::Type::Point;
+    const double size = 1.01 * ring.radius;
     for (auto [s, t] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}}) {
-        Vec3d q = C + (u * double(s) + v * double(t)) * size;
+        Vec3d q = ring.centre + (ring.u * double(s) + ring.v * double(t)) * size;
         for (double x : {q.x, q.y, q.z}) points.numbers.push_back(float(x));
     }
     quad->params = {points};
-    frame->primitives.push_back(quad);
+    return quad;
+}
 
+world::Settings settingsOf(const ProbeArguments& a, const StopFlag* stop) {
     world::Settings t;
     t.hider = world::Hider::Path;
     t.seed = a.seed;
@@ -146,69 +187,103 @@ int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& f
     t.texturePaths.push_back(".");
     if (std::string s = shippedShaders(); !s.empty()) t.shaderPaths.push_back(s);
     t.pluginPaths = t.shaderPaths;
+    t.stop = stop;
+    return t;
+}
+
+/// Samples in up to 64 blocks, each a stratified sequence of its own: their means are independent, so their spread is the
+/// error.
+struct Blocks {
+    uint32_t each; ///< samples
+    std::vector<Color> means;
+    std::atomic<uint32_t> missed{0}; ///< samples that did not meet the quad
+    explicit Blocks(uint32_t spp) {
+        const uint32_t blocks = std::min(64u, std::max(2u, spp));
+        each = std::max(1u, (spp + blocks - 1) / blocks);
+        means.resize(blocks);
+    }
+    /// Traces one of them, unless it is halted.
+    void trace(size_t block, render::Tracer&, const Ring&, const scene::Frame&, uint64_t seed, const StopFlag* halt);
+};
+
+void Blocks::trace(size_t block, render::Tracer& tracer, const Ring& ring, const scene::Frame& frame, uint64_t seed,
+                   const StopFlag* halt) {
+    const Matrix& toCamera = frame.options.worldToCamera.first();
+    integrator::CameraRay ray;
+    ray.direction = Vec3(normalize(transformVector(toCamera, -ring.normal)));
+    ray.width = float(ring.radius);
+    ray.time = frame.options.shutterOpen;
+    ray.px = int(block);
+    double sum[3] = {0, 0, 0};
+    for (uint32_t begin = 0; begin < each; begin += 1024) {
+        std::vector<integrator::CameraRay> rays;
+        for (uint32_t s = begin; s < std::min(each, begin + 1024); ++s) {
+            const Vec2 e = render::Sampler(seed, int(block), 0).get2(0, render::kUseFilter, 0, s);
+            rays.push_back(ray);
+            rays.back().origin = Vec3(transformPoint(toCamera, ring.begin(e)));
+            rays.back().sample = s;
+        }
+        std::vector<integrator::SampleResult> results(rays.size());
+        if (!tracer.trace(rays, results, halt)) return;
+        for (const auto& r : results) {
+            for (int k = 0; k < 3; ++k) sum[k] += double(r.color[k]);
+            if (r.z >= 1e38f) ++missed;
+        }
+    }
+    for (int k = 0; k < 3; ++k) means[block][k] = float(sum[k] / each);
+}
+
+/// The mean of the blocks and its standard error.
+struct Estimate {
+    double mean[3] = {0, 0, 0}, error[3] = {0, 0, 0};
+    explicit Estimate(const std::vector<Color>& means) {
+        const uint32_t blocks = uint32_t(means.size());
+        for (int k = 0; k < 3; ++k) {
+            for (const Color& c : means) mean[k] += double(c[k]) / blocks;
+            for (const Color& c : means) error[k] += (double(c[k]) - mean[k]) * (double(c[k]) - mean[k]);
+            error[k] = std::sqrt(error[k] / (double(blocks) * (blocks - 1)));
+        }
+    }
+};
+
+/// found: what --json prints.
+int probe(const ProbeArguments& a, Diagnostics& diags, nlohmann::ordered_json& found) {
+    const ProbedPoint point = pointOf(a);
+    const auto frame = frameToProbe(a, diags);
+    if (!frame) return kNothingRendered;
+    const Ring ring = ringAbout(point, *frame, a.radius);
+    frame->primitives.push_back(quadUnder(ring, whiteAttributes(*frame)));
     render::Engine engine = render::transportEngine();
     const StopFlag* stop = watchInterrupts();
-    t.stop = stop;
-    auto world = engine.build(frame, t, diags);
+    auto world = engine.build(frame, settingsOf(a, stop), diags);
     if (*stop) return kInterrupted;
     if (!world) return kNothingRendered;
 
-    // Samples in up to 64 blocks, each a stratified sequence of its own: their means are independent, so their spread is the
-    // error.
-    uint32_t blocks = std::min(64u, std::max(2u, a.spp)), each = std::max(1u, (a.spp + blocks - 1) / blocks);
-    integrator::CameraRay ray;
-    ray.direction = Vec3(normalize(transformVector(toCamera, -N)));
-    ray.width = float(radius);
-    ray.time = frame->options.shutterOpen;
-    std::vector<Color> means(blocks);
-    std::atomic<uint32_t> missed{0};
+    Blocks blocks(a.spp);
+    const size_t count = blocks.means.size();
     const int threads = a.threads > 0 ? a.threads : defaultThreads();
-    render::Team team(std::min(threads, int(blocks)));
+    render::Team team(std::min(threads, int(count)));
     std::vector<std::unique_ptr<render::Tracer>> tracers(size_t(team.threads()));
     StopFlag halt;
     team.run(
-        blocks, &halt,
+        count, &halt,
         [&](int worker, size_t b) {
             auto& tracer = tracers[size_t(worker)];
             if (!tracer) tracer = engine.tracer(world, diags);
-            double sum[3] = {0, 0, 0};
-            for (uint32_t begin = 0; begin < each; begin += 1024) {
-                std::vector<integrator::CameraRay> rays;
-                for (uint32_t s = begin; s < std::min(each, begin + 1024); ++s) {
-                    Vec2 e = render::Sampler(a.seed, int(b), 0).get2(0, render::kUseFilter, 0, s);
-                    double r = radius * std::sqrt(0.25 + 0.75 * e.x), phi = 2 * kPi * e.y;
-                    Vec3d from = C + N * above + u * (r * std::cos(phi)) + v * (r * std::sin(phi));
-                    rays.push_back(ray);
-                    rays.back().origin = Vec3(transformPoint(toCamera, from));
-                    rays.back().px = int(b);
-                    rays.back().sample = s;
-                }
-                std::vector<integrator::SampleResult> results(rays.size());
-                if (!tracer->trace(rays, results, &halt)) return;
-                for (const auto& r : results) {
-                    for (int k = 0; k < 3; ++k) sum[k] += double(r.color[k]);
-                    if (r.z >= 1e38f) ++missed;
-                }
-            }
-            for (int k = 0; k < 3; ++k) means[b][k] = float(sum[k] / each);
+            blocks.trace(b, *tracer, ring, *frame, a.seed, &halt);
         },
         [&](size_t) {
             if (*stop) halt = 1;
         });
     if (*stop) return kInterrupted;
-    if (missed) {
+    if (blocks.missed) {
         diags.report(Severity::Error, Rie::Math, {},
                      "the point could not be seen: it is lost in the rounding of the scene's coordinates");
         return kNothingRendered;
     }
-    double mean[3] = {0, 0, 0}, error[3] = {0, 0, 0};
-    for (int k = 0; k < 3; ++k) {
-        for (const Color& c : means) mean[k] += double(c[k]) / blocks;
-        for (const Color& c : means) error[k] += (double(c[k]) - mean[k]) * (double(c[k]) - mean[k]);
-        error[k] = std::sqrt(error[k] / (double(blocks) * (blocks - 1)));
-    }
-    if (a.json) found = {{"radiance", mean}, {"standardError", error}, {"spp", uint64_t(blocks) * each}};
-    else std::printf("%.7g %.7g %.7g  %.3g %.3g %.3g\n", mean[0], mean[1], mean[2], error[0], error[1], error[2]);
+    const Estimate e(blocks.means);
+    if (a.json) found = {{"radiance", e.mean}, {"standardError", e.error}, {"spp", uint64_t(count) * blocks.each}};
+    else std::printf("%.7g %.7g %.7g  %.3g %.3g %.3g\n", e.mean[0], e.mean[1], e.mean[2], e.error[0], e.error[1], e.error[2]);
     return diags.errors() ? kDoneWithErrors : kDone;
 }
 

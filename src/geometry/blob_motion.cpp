@@ -138,7 +138,7 @@ void BlobMotion::leafBox(const BlobLeaf& plan, const Span& s, Vec3d& lo, Vec3d& 
 /// With A the leaf's matrix at the centre, sD its change and so' that of its origin, the leaf's coordinates q of a point become
 /// (q - s e) (1 + s E)^-1, where E = D A^-1 and e = o' A^-1: they change by at most |e + q E| / (1 - |E|).
 Interval BlobMotion::leafBounds(const BlobLeaf& plan, const Vec3d& lo, const Vec3d& hi, const Span& s) const {
-    if (plan.kind == BlobLeaf::Kind::Ground) return plan_.leafBounds(plan, lo, hi);
+    if (plan.kind == BlobLeaf::Kind::Ground) return blobLeafBounds(plan, lo, hi);
     Vec3d from, to;
     leafBox(plan, s, from, to);
     if (lo.x > to.x || hi.x < from.x || lo.y > to.y || hi.y < from.y || lo.z > to.z || hi.z < from.z) return {0, 0};

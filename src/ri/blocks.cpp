@@ -293,6 +293,62 @@ scene::Object* Interpreter::openObject() {
     return b ? &b->object->object : nullptr;
 }
 
+namespace {
+
+/// Takes attributes of some classes as they are in `from`.
+void takeValues(scene::Attributes& to, const scene::Attributes& from, std::initializer_list<const char*> classes) {
+    auto in = [&](const std::string& key) {
+        return std::any_of(classes.begin(), classes.end(), [&](const char* c) { return key.starts_with(std::string(c) + ":"); });
+    };
+    std::erase_if(to.values, [&](const auto& v) { return in(v.first); });
+    for (const auto& v : from.values)
+        if (in(v.first)) to.values.insert(v);
+}
+
+// The subsets of Resource "attributes" "restore".
+
+void takeShading(scene::Attributes& to, const scene::Attributes& from) {
+    to.color = from.color;
+    to.opacity = from.opacity;
+    to.surface = from.surface;
+    to.atmosphere = from.atmosphere;
+    to.interior = from.interior;
+    to.exterior = from.exterior;
+    to.lights = from.lights;
+    to.areaLight = from.areaLight;
+    to.shadingRate = from.shadingRate;
+    to.smoothShading = from.smoothShading;
+    to.coshaders = from.coshaders;
+    std::copy(std::begin(from.textureCoordinates), std::end(from.textureCoordinates), to.textureCoordinates);
+    takeValues(to, from, {"shade", "trace", "light", "user", "irradiance", "photon", "subsurface", "shadow"});
+}
+
+void takeGeometryModification(scene::Attributes& to, const scene::Attributes& from) {
+    to.displacement = from.displacement;
+    to.trimCurve = from.trimCurve;
+    takeValues(to, from, {"displacementbound", "trimcurve", "dice", "stitch", "GeometricApproximation"});
+}
+
+void takeGeometryDefinition(scene::Attributes& to, const scene::Attributes& from) {
+    to.ubasis = from.ubasis;
+    to.vbasis = from.vbasis;
+    to.bound = from.bound;
+    to.detail = from.detail;
+    to.detailSpace = from.detailSpace;
+    std::copy(std::begin(from.detailRange), std::end(from.detailRange), to.detailRange);
+}
+
+void takeHiding(scene::Attributes& to, const scene::Attributes& from) {
+    to.sides = from.sides;
+    to.matte = from.matte;
+    to.inside = from.inside;
+    to.absoluteHandedness = from.absoluteHandedness;
+    to.rightHanded = from.rightHanded;
+    takeValues(to, from, {"visibility", "sides", "cull", "hider", "grouping"});
+}
+
+} // namespace
+
 void Interpreter::resource(const Call& call) {
     const std::string& handle = call.text(0);
     const std::string& type = call.text(1);
@@ -325,51 +381,10 @@ void Interpreter::resource(const Call& call) {
         if (subset == name) known = true;
         return all || subset == name;
     };
-    auto values = [&](std::initializer_list<const char*> classes) {
-        auto in = [&](const std::string& key) {
-            return std::any_of(classes.begin(), classes.end(),
-                               [&](const char* c) { return key.starts_with(std::string(c) + ":"); });
-        };
-        std::erase_if(to.values, [&](const auto& v) { return in(v.first); });
-        for (const auto& v : from.values)
-            if (in(v.first)) to.values.insert(v);
-    };
-    if (part("shading")) {
-        to.color = from.color;
-        to.opacity = from.opacity;
-        to.surface = from.surface;
-        to.atmosphere = from.atmosphere;
-        to.interior = from.interior;
-        to.exterior = from.exterior;
-        to.lights = from.lights;
-        to.areaLight = from.areaLight;
-        to.shadingRate = from.shadingRate;
-        to.smoothShading = from.smoothShading;
-        to.coshaders = from.coshaders;
-        std::copy(std::begin(from.textureCoordinates), std::end(from.textureCoordinates), to.textureCoordinates);
-        values({"shade", "trace", "light", "user", "irradiance", "photon", "subsurface", "shadow"});
-    }
-    if (part("geometrymodification")) {
-        to.displacement = from.displacement;
-        to.trimCurve = from.trimCurve;
-        values({"displacementbound", "trimcurve", "dice", "stitch", "GeometricApproximation"});
-    }
-    if (part("geometrydefinition")) {
-        to.ubasis = from.ubasis;
-        to.vbasis = from.vbasis;
-        to.bound = from.bound;
-        to.detail = from.detail;
-        to.detailSpace = from.detailSpace;
-        std::copy(std::begin(from.detailRange), std::end(from.detailRange), to.detailRange);
-    }
-    if (part("hiding")) {
-        to.sides = from.sides;
-        to.matte = from.matte;
-        to.inside = from.inside;
-        to.absoluteHandedness = from.absoluteHandedness;
-        to.rightHanded = from.rightHanded;
-        values({"visibility", "sides", "cull", "hider", "grouping"});
-    }
+    if (part("shading")) takeShading(to, from);
+    if (part("geometrymodification")) takeGeometryModification(to, from);
+    if (part("geometrydefinition")) takeGeometryDefinition(to, from);
+    if (part("hiding")) takeHiding(to, from);
     if (part("transform")) state.ctm = i->second.ctm;
     if (all) takeAll(to, from);
     if (!part_.empty()) markPart(to);

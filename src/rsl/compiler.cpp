@@ -1,6 +1,7 @@
 #include "rsl/compiler.h"
 #include "base/file.h"
 #include "base/limits.h"
+#include "rsl/compilerstate.h"
 #include "rsl/defaultreads.h"
 #include "rsl/front/protocol.h"
 #include "rsl/ir/build.h"
@@ -13,18 +14,12 @@
 #include "rsl/oslsource.h"
 #include "rsl/passes/looplimit.h"
 #include "rsl/passes/optimize.h"
-#include "rsl/plugins.h"
 #include "rsl/shadersearch.h"
 #include <algorithm>
-#include <atomic>
-#include <bit>
 #include <chrono>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
-#include <future>
-#include <map>
-#include <mutex>
 #include <set>
 
 namespace fs = std::filesystem;
@@ -41,34 +36,6 @@ std::string readText(const std::string& path) {
 }
 
 } // namespace
-
-struct ShaderCompiler::State {
-    Settings settings;
-    std::unique_ptr<jit::KernelCache> cache;
-    std::atomic<bool> cacheRefused = false; ///< which was reported
-    mutable std::mutex mutex;
-    std::map<std::string, std::shared_future<ShaderPtr>> shaders;
-    std::map<std::string, std::shared_future<KernelPtr>> kernels;
-    CompilerStatistics statistics;
-    std::vector<ShaderPtr> held;
-    PluginLibrary plugins;
-    std::function<void*(const std::string&)> outside = [this](const std::string& name) { return plugins.address(name); };
-
-    FrontOptions front() {
-        FrontOptions o;
-        o.defines = settings.defines;
-        o.dialect = settings.dialect;
-        o.rispecSpecular = settings.rispecSpecular;
-        o.lint = settings.lint;
-        if (settings.allowExec)
-            o.plugin = [this](const std::string& name, const std::string& beside, std::string& why, std::string& hint) {
-                std::vector<std::string> folders{beside};
-                folders.insert(folders.end(), settings.pluginPaths.begin(), settings.pluginPaths.end());
-                return plugins.load(name, folders, why, hint);
-            };
-        return o;
-    }
-};
 
 ShaderCompiler::ShaderCompiler() : ShaderCompiler(Settings{}) {}
 
@@ -350,162 +317,6 @@ std::string ShaderCompiler::dump(const ShaderPtr& shader, const KernelOptions& o
 CompilerStatistics ShaderCompiler::statistics() const {
     std::lock_guard lock(state_->mutex);
     return state_->statistics;
-}
-
-namespace {
-
-// Runs a kernel whose inputs are spaces and predefined variables for one point.
-void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::vector<float>>& out) {
-    constexpr int kStride = 64;
-    struct Block {
-        float* p;
-        explicit Block(int rows) : p(static_cast<float*>(std::aligned_alloc(64, size_t(std::max(1, rows)) * kStride * 4))) {
-            std::fill(p, p + std::max(1, rows) * kStride, 0.0f);
-        }
-        Block(Block&& o) noexcept : p(o.p) { o.p = nullptr; }
-        ~Block() { std::free(p); }
-    };
-    std::vector<Block> blocks;
-    std::vector<const float*> in;
-    std::vector<float*> outs;
-    for (const auto& i : k.inputs()) {
-        const int rows = ir::components(i.kind) * inputParts(i) * std::max(1, i.array);
-        blocks.emplace_back(rows);
-        float* p = blocks.back().p;
-        if (i.kind == ir::Kind::Matrix) {
-            float m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-            if (const InputName name = InputName::parse(i.name); spaces && name.kind == InputName::Kind::Space)
-                spaces(name.from, name.to, m);
-            for (int c = 0; c < 16; c++)
-                for (int n = 0; n < (i.uniform ? 1 : kStride); n++) p[i.uniform ? c : c * kStride + n] = m[c];
-        }
-        in.push_back(p);
-    }
-    for (const auto& o : k.outputs()) {
-        blocks.emplace_back(ir::components(o.kind));
-        outs.push_back(blocks.back().p);
-    }
-    KernelCall call{};
-    call.in = in.data();
-    call.out = outs.data();
-    call.n = 1;
-    call.stride = kStride;
-    call.strings = k.strings().data();
-    call.service = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*, float*) {};
-    call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
-    call.lightEnd = [](KernelCall*, int32_t, int32_t, int32_t) {};
-    k.run(&call);
-    for (size_t o = 0; o < outs.size(); o++) {
-        out.emplace_back();
-        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++) out.back().push_back(outs[o][c * kStride]);
-    }
-}
-
-} // namespace
-
-std::vector<std::string> CompiledShader::computedParameters(const std::set<std::string>& given,
-                                                            const std::vector<std::string>& varying) const {
-    std::set<std::string> differ(varying.begin(), varying.end()); // from sample to sample
-    std::vector<std::string> computed;
-    for (const ParameterInfo& p : parameters_) {
-        if (given.count(p.name) || differ.count(p.name)) continue;
-        if (!p.sampleDefault &&
-            std::none_of(p.defaultReads.begin(), p.defaultReads.end(), [&](const auto& r) { return differ.count(r) > 0; }))
-            continue;
-        differ.insert(p.name);
-        computed.push_back(p.name);
-    }
-    return computed;
-}
-
-std::vector<ParameterValue> ShaderCompiler::parameterValues(const ShaderPtr& shader, Diagnostics& diagnostics,
-                                                            const SpaceFn& spaces, const std::vector<ParameterValue>& given) {
-    std::vector<ParameterValue> values;
-    if (!shader) return values;
-    for (const auto& p : shader->parameters()) {
-        ParameterValue v{p.name, p.type, {}, {}};
-        const size_t n = size_t(std::max(1, p.type.array));
-        if (p.type.base == Base::String) v.strings.resize(n);
-        else v.numbers.resize(n * size_t(componentCount(p.type.base)));
-        values.push_back(std::move(v));
-    }
-    if (values.empty()) return values;
-    // Given values become constants of the defaults that read them; the others are put in below.
-    std::vector<ParameterValue> read;
-    for (const ParameterValue& g : given)
-        for (const auto& p : shader->parameters())
-            if (std::find(p.defaultReads.begin(), p.defaultReads.end(), g.name) != p.defaultReads.end()) {
-                read.push_back(g);
-                break;
-            }
-    auto k = buildDefaults(shader->program(), shader->shader(), diagnostics, read);
-    if (!k) return values;
-    KernelOptions options;
-    options.vectors = 1;
-    const int errors = diagnostics.errors();
-    ir::optimize(*k, options, diagnostics);
-    if (diagnostics.errors() > errors) return values;
-    // Mostly everything is constant by now, and no code is needed.
-    std::vector<const ir::Inst*> results(k->outputs.size(), nullptr);
-    bool constant = true;
-    for (const ir::Inst* i : k->body.body)
-        if (i->op == ir::Op::Output && i->index >= 0 && size_t(i->index) < results.size()) results[size_t(i->index)] = i->args[0];
-    for (const ir::Inst* r : results) constant &= r && (r->op == ir::Op::Const || r->op == ir::Op::ConstString);
-    std::vector<std::vector<float>> numbers;
-    if (constant) {
-        for (const ir::Inst* r : results) {
-            if (r->op == ir::Op::ConstString) numbers.push_back({std::bit_cast<float>(internString(r->text))});
-            else numbers.push_back(r->numbers);
-        }
-    } else {
-        jit::KernelFile file;
-        std::string error;
-        options.optimize = 0;
-        KernelPtr code;
-        std::string key = shader->digest_ + "\ndefaults\n" + jit::codeKey(options) + descriptorDigest() + jit::programIdentity();
-        for (const ParameterValue& v : read) {
-            key += '\1' + v.name + '\2';
-            key.append(reinterpret_cast<const char*>(v.numbers.data()), v.numbers.size() * sizeof(float));
-            for (const std::string& s : v.strings) key += '\3' + s;
-        }
-        key = jit::sha256(key);
-        ir::limitLoops(*k);
-        if (auto cached = state_->cache->load(key)) code = jit::load(*cached, true, error, state_->outside);
-        if (!code && jit::generate(*k, options, file, error)) {
-            code = jit::load(file, false, error, state_->outside);
-            if (code) state_->cache->store(key, file);
-        }
-        if (!code || code->facts().suspends) {
-            diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0},
-                               "the parameters' defaults cannot be computed: " + error);
-            return values;
-        }
-        runOnce(*code, spaces, numbers);
-    }
-    for (size_t o = 0; o < numbers.size(); o++) {
-        const OutputName output = OutputName::parse(k->outputs[o].name);
-        const std::string& name = output.name;
-        const size_t element = size_t(std::max(output.element, 0));
-        for (auto& v : values) {
-            if (v.name != name) continue;
-            if (v.type.base == Base::String) {
-                if (element < v.strings.size())
-                    v.strings[element] = internedString(std::bit_cast<int32_t>(numbers[o].empty() ? 0.0f : numbers[o][0]));
-            } else {
-                const size_t n = size_t(componentCount(v.type.base));
-                for (size_t c = 0; c < n && c < numbers[o].size() && element * n + c < v.numbers.size(); c++)
-                    v.numbers[element * n + c] = numbers[o][c];
-            }
-        }
-    }
-    for (const ParameterValue& g : given)
-        for (ParameterValue& v : values)
-            if (v.name == g.name) {
-                v.numbers = g.numbers;
-                v.strings.resize(std::max(v.strings.size(), g.strings.size())); // elements that are not given keep their default
-                std::copy(g.strings.begin(), g.strings.end(), v.strings.begin());
-            }
-    return values;
 }
 
 } // namespace alpenglow::rsl

@@ -70,6 +70,44 @@ bool EvaluationPoint::value(const std::string& name, int component, int part, fl
     return false;
 }
 
+namespace {
+
+/// rsl::ServiceFn of such a point.
+void answerAtPoint(KernelCall* kc, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+    auto& x = *static_cast<PointContext*>(kc->user);
+    if (site < 0) return;
+    if (x.answers(site, first, mask, lanes, in, out)) return;
+    const ir::Site& s = x.kernel->sites()[size_t(site)];
+    basicService(
+        s, mask, lanes, in, out, *x.diagnostics,
+        [&](int lane, const std::string& text) {
+            if (x.printed && first + lane == 0) *x.printed += text;
+        },
+        &x.kernel->files());
+    if (s.op == "random") { // one number for each call in the text, and each turn of a loop
+        x.draws.resize(std::max(x.draws.size(), size_t(site + 1) * size_t(x.points)));
+        for (int lane = 0; lane < lanes; lane++) {
+            if (!(mask >> lane & 1) || first + lane >= x.points) continue;
+            const int turn = x.draws[size_t(site) * size_t(x.points) + size_t(first + lane)]++;
+            float h[3];
+            hashText("random " + std::to_string(site) + " " + std::to_string(turn), h);
+            for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++)
+                out[c * lanes + lane] = h[c];
+        }
+    }
+    if (s.op.ends_with("transform") && s.op != "ctransform") { // every space is "current": names come first, then the value
+        int row = 0;
+        for (const ir::Kind k : s.argKinds) row += k == ir::Kind::String;
+        std::copy_n(in + row * lanes, ir::components(s.resultKinds[0]) * lanes, out);
+    }
+    if (s.op == "gridmin" || s.op == "gridmax") { // a grid of one point without extent
+        for (int c = 0; c < ir::components(s.argKinds.empty() ? ir::Kind::Float : s.argKinds[0]); c++)
+            std::copy_n(in + c * lanes, lanes, out + c * lanes);
+    }
+}
+
+} // namespace
+
 bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed,
                 Diagnostics& diagnostics, const AnswerFn& answer) {
     if (k.facts().suspends) return false;
@@ -108,38 +146,7 @@ bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<
     call.stride = stride;
     call.strings = k.strings().data();
     call.user = &context;
-    call.service = [](KernelCall* kc, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
-        auto& x = *static_cast<PointContext*>(kc->user);
-        if (site < 0) return;
-        if (x.answers(site, first, mask, lanes, in, out)) return;
-        const ir::Site& s = x.kernel->sites()[size_t(site)];
-        basicService(
-            s, mask, lanes, in, out, *x.diagnostics,
-            [&](int lane, const std::string& text) {
-                if (x.printed && first + lane == 0) *x.printed += text;
-            },
-            &x.kernel->files());
-        if (s.op == "random") { // one number for each call in the text, and each turn of a loop
-            x.draws.resize(std::max(x.draws.size(), size_t(site + 1) * size_t(x.points)));
-            for (int lane = 0; lane < lanes; lane++) {
-                if (!(mask >> lane & 1) || first + lane >= x.points) continue;
-                const int turn = x.draws[size_t(site) * size_t(x.points) + size_t(first + lane)]++;
-                float h[3];
-                hashText("random " + std::to_string(site) + " " + std::to_string(turn), h);
-                for (int c = 0; c < std::min(3, s.resultKinds.empty() ? 1 : ir::components(s.resultKinds[0])); c++)
-                    out[c * lanes + lane] = h[c];
-            }
-        }
-        if (s.op.ends_with("transform") && s.op != "ctransform") { // every space is "current": names come first, then the value
-            int row = 0;
-            for (const ir::Kind k : s.argKinds) row += k == ir::Kind::String;
-            std::copy_n(in + row * lanes, ir::components(s.resultKinds[0]) * lanes, out);
-        }
-        if (s.op == "gridmin" || s.op == "gridmax") { // a grid of one point without extent
-            for (int c = 0; c < ir::components(s.argKinds.empty() ? ir::Kind::Float : s.argKinds[0]); c++)
-                std::copy_n(in + c * lanes, lanes, out + c * lanes);
-        }
-    };
+    call.service = answerAtPoint;
     call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
     call.lightFetch = [](KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
     call.lightEnd = [](KernelCall*, int32_t, int32_t, int32_t) {};

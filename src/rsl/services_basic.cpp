@@ -268,139 +268,183 @@ void hashText(const std::string& s, float out[3]) {
     }
 }
 
-static void complain(Arguments a, const SourcePlace& place, Diagnostics& diagnostics) {
+namespace {
+
+/// A call of one of these services for some lanes.
+class BasicCall {
+public:
+    BasicCall(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics,
+              const PrintFn& print, const std::vector<std::string>* files)
+        : site_(s), mask_(mask), lanes_(lanes), in_(in), out_(out), diagnostics_(diagnostics), print_(print),
+          place_{files && s.place.file >= 0 && size_t(s.place.file) < files->size() ? (*files)[size_t(s.place.file)] : "",
+                 s.place.line, s.place.column} {}
+    /// False for sites of other services.
+    bool answer();
+
+private:
+    template <class F> void each(F&& f) const {
+        for (int l = 0; l < lanes_; l++)
+            if (mask_ >> l & 1) f(l);
+    }
+    Arguments arguments(int lane) const { return Arguments(site_, lanes_, in_, lane); }
+    void put(int row, int lane, float v) { out_[size_t(row) * size_t(lanes_) + size_t(lane)] = v; }
+    void putString(int lane, const std::string&);
+    void say(const std::string& key, Severity severity, Rie code, std::string message, std::string hint = {}) {
+        diagnostics_.reportOnce(key, {severity, code, place_, std::move(message), std::move(hint), {}});
+    }
+    void cut(std::string&);
+
+    void inCategories();
+    void complaint();
+    void arrayLimit();
+    void format();
+    void print();
+    void concat();
+    void match();
+    void colourTransform();
+    void hash();
+
+    const ir::Site& site_;
+    uint64_t mask_;
+    int32_t lanes_;
+    const float* in_;
+    float* out_;
+    Diagnostics& diagnostics_;
+    const PrintFn& print_;
+    SourcePlace place_;
+};
+
+void BasicCall::putString(int lane, const std::string& t) {
+    bool full = false;
+    put(0, lane, std::bit_cast<float>(internRuntimeString(t, full)));
+    if (full)
+        say("runtime strings", Severity::Error, Rie::Limit,
+            "the strings that shaders make while they run take more than " + std::to_string(limits::kRuntimeStrings) +
+                " bytes; further ones are empty",
+            "a string that differs at every point is kept for each of them: print it, or make it from uniform values");
+}
+
+/// A string that is joined with itself in a loop doubles each time.
+void BasicCall::cut(std::string& t) {
+    if (t.size() <= limits::kTokenBytes) return;
+    t.resize(limits::kTokenBytes);
+    say("stringlimit:" + place_.file + std::to_string(place_.line), Severity::Error, Rie::Limit,
+        site_.op + "(): a string has no more than " + std::to_string(limits::kTokenBytes) + " characters; the rest is cut off");
+}
+
+/// getshaders() with a category that is known now.
+void BasicCall::inCategories() {
+    each([&](int l) { put(0, l, inCategory(arguments(l).string(), site_.strings[1]) ? 1 : 0); });
+}
+
+/// What the builder could only say about a way through the shader.
+void BasicCall::complaint() {
+    if (!mask_) return;
+    Arguments a = arguments(std::countr_zero(mask_));
     std::string text;
     while (a.more(true)) text += a.string();
-    diagnostics.reportOnce("complaint:" + place.file + std::to_string(place.line) + ":" + std::to_string(place.column) + text,
-                           {Severity::Error, Rie::Consistency, place, text, {}, {}});
+    say("complaint:" + place_.file + std::to_string(place_.line) + ":" + std::to_string(place_.column) + text, Severity::Error,
+        Rie::Consistency, text);
 }
+
+void BasicCall::arrayLimit() {
+    say("arraylimit:" + place_.file + std::to_string(place_.line), Severity::Error, Rie::Limit,
+        "an array cannot grow beyond " + std::to_string(mask_ ? int(in_[std::countr_zero(mask_)]) : 0) +
+            " elements; what follows is left out",
+        "resize() or reserve() it with the number it needs");
+}
+
+void BasicCall::format() {
+    each([&](int l) {
+        std::string t = formatSite(site_, lanes_, in_, l);
+        cut(t);
+        putString(l, t);
+    });
+}
+
+/// printf(), and print(), which ends the line.
+void BasicCall::print() {
+    each([&](int l) {
+        const std::string t = formatSite(site_, lanes_, in_, l) + (site_.op == "print" ? "\n" : "");
+        if (print_) print_(l, t);
+        else std::fputs(printable(t).c_str(), stdout);
+    });
+}
+
+void BasicCall::concat() {
+    each([&](int l) {
+        Arguments a = arguments(l);
+        std::string t;
+        while (a.more(true)) t += a.string();
+        cut(t);
+        putString(l, t);
+    });
+}
+
+void BasicCall::match() {
+    each([&](int l) {
+        Arguments a = arguments(l);
+        const std::string pattern = a.string(), subject = a.string();
+        std::string error;
+        put(0, l, matchText(pattern, subject, &error) ? 1.0f : 0.0f);
+        if (!error.empty()) say("match:" + pattern, Severity::Error, Rie::Syntax, "match(): \"" + pattern + "\": " + error);
+    });
+}
+
+/// ctransform() between spaces that are known only now.
+void BasicCall::colourTransform() {
+    const auto lower = [](std::string t) {
+        for (char& c : t) c = char(std::tolower(static_cast<unsigned char>(c)));
+        return t;
+    };
+    const auto known = [](const std::string& t) { return t == "rgb" || t == "hsv" || t == "hsl" || t == "yiq" || t == "xyz"; };
+    each([&](int l) {
+        Arguments a = arguments(l);
+        const std::string from = lower(a.string()), to = lower(a.string());
+        for (const std::string& t : {from, to})
+            if (!t.empty() && !known(t))
+                say("ctransform:" + t, Severity::Warning, Rie::NoError,
+                    "there is no colour space \"" + t + "\"; the colour stays as it is", "there are: rgb, hsv, hsl, yiq, xyz");
+        FormatValue v = a.value();
+        float c[3] = {v.numbers[0], v.numbers[1], v.numbers[2]}, r[3];
+        if (from != to && known(from) && known(to)) {
+            if (from != "rgb" && evaluateRuntime("al_" + from + "_to_rgb", c, 3, r, 3)) std::copy_n(r, 3, c);
+            if (to != "rgb" && evaluateRuntime("al_rgb_to_" + to, c, 3, r, 3)) std::copy_n(r, 3, c);
+        }
+        for (int k = 0; k < 3; k++) put(k, l, c[k]);
+    });
+}
+
+void BasicCall::hash() {
+    each([&](int l) {
+        float h[3];
+        hashText(arguments(l).string(), h);
+        const int n = site_.resultKinds.empty() ? 1 : std::min(3, ir::components(site_.resultKinds[0]));
+        for (int c = 0; c < n; c++) put(c, l, h[c]);
+    });
+}
+
+bool BasicCall::answer() {
+    constexpr std::pair<std::string_view, void (BasicCall::*)()> kServices[] = {{"incategory", &BasicCall::inCategories},
+                                                                                {"complaint", &BasicCall::complaint},
+                                                                                {"arraylimit", &BasicCall::arrayLimit},
+                                                                                {"format", &BasicCall::format},
+                                                                                {"printf", &BasicCall::print},
+                                                                                {"print", &BasicCall::print},
+                                                                                {"concat", &BasicCall::concat},
+                                                                                {"match", &BasicCall::match},
+                                                                                {"ctransform", &BasicCall::colourTransform},
+                                                                                {"stringhash", &BasicCall::hash}};
+    for (const auto& [name, service] : kServices)
+        if (site_.op == name) return (this->*service)(), true;
+    return false;
+}
+
+} // namespace
 
 bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics,
                   const PrintFn& print, const std::vector<std::string>* files) {
-    const std::string file =
-        files && s.place.file >= 0 && size_t(s.place.file) < files->size() ? (*files)[size_t(s.place.file)] : "";
-    auto each = [&](auto&& f) {
-        for (int l = 0; l < lanes; l++)
-            if (mask >> l & 1) f(l);
-    };
-    auto put = [&](int row, int lane, float v) { out[size_t(row) * size_t(lanes) + size_t(lane)] = v; };
-    auto putString = [&](int lane, const std::string& t) {
-        bool full = false;
-        put(0, lane, std::bit_cast<float>(internRuntimeString(t, full)));
-        if (!full) return;
-        Diagnostic d;
-        d.severity = Severity::Error;
-        d.code = Rie::Limit;
-        d.place = {file, s.place.line, s.place.column};
-        d.message = "the strings that shaders make while they run take more than " + std::to_string(limits::kRuntimeStrings) +
-                    " bytes; further ones are empty";
-        d.hint = "a string that differs at every point is kept for each of them: print it, or make it from uniform values";
-        diagnostics.reportOnce("runtime strings", d);
-    };
-    // A string that is joined with itself in a loop doubles each time.
-    auto cut = [&](std::string& t) {
-        if (t.size() <= limits::kTokenBytes) return;
-        t.resize(limits::kTokenBytes);
-        Diagnostic d;
-        d.severity = Severity::Error;
-        d.code = Rie::Limit;
-        d.place = {file, s.place.line, s.place.column};
-        d.message =
-            s.op + "(): a string has no more than " + std::to_string(limits::kTokenBytes) + " characters; the rest is cut off";
-        diagnostics.reportOnce("stringlimit:" + file + std::to_string(s.place.line), d);
-    };
-    if (s.op == "incategory") { // getshaders() with a category that is known now
-        each([&](int l) {
-            Arguments a(s, lanes, in, l);
-            const std::string wanted = a.string();
-            put(0, l, inCategory(wanted, s.strings[1]) ? 1 : 0);
-        });
-    } else if (s.op == "complaint") { // what the builder could only say about a way through the shader
-        if (mask) complain(Arguments(s, lanes, in, std::countr_zero(mask)), {file, s.place.line, s.place.column}, diagnostics);
-    } else if (s.op == "arraylimit") {
-        Diagnostic d;
-        d.severity = Severity::Error;
-        d.code = Rie::Limit;
-        d.place = {file, s.place.line, s.place.column};
-        d.message = "an array cannot grow beyond " + std::to_string(mask ? int(in[std::countr_zero(mask)]) : 0) +
-                    " elements; what follows is left out";
-        d.hint = "resize() or reserve() it with the number it needs";
-        diagnostics.reportOnce("arraylimit:" + file + std::to_string(s.place.line), d);
-    } else if (s.op == "format") {
-        each([&](int l) {
-            std::string t = formatSite(s, lanes, in, l);
-            cut(t);
-            putString(l, t);
-        });
-    } else if (s.op == "printf" || s.op == "print") {
-        each([&](int l) {
-            const std::string t = formatSite(s, lanes, in, l) + (s.op == "print" ? "\n" : "");
-            if (print) print(l, t);
-            else std::fputs(printable(t).c_str(), stdout);
-        });
-    } else if (s.op == "concat") {
-        each([&](int l) {
-            Arguments a(s, lanes, in, l);
-            std::string t;
-            while (a.more(true)) t += a.string();
-            cut(t);
-            putString(l, t);
-        });
-    } else if (s.op == "match") {
-        each([&](int l) {
-            Arguments a(s, lanes, in, l);
-            const std::string pattern = a.string(), subject = a.string();
-            std::string error;
-            put(0, l, matchText(pattern, subject, &error) ? 1.0f : 0.0f);
-            if (!error.empty()) {
-                Diagnostic d;
-                d.severity = Severity::Error;
-                d.code = Rie::Syntax;
-                d.place = {file, s.place.line, s.place.column};
-                d.message = "match(): \"" + pattern + "\": " + error;
-                diagnostics.reportOnce("match:" + pattern, d);
-            }
-        });
-    } else if (s.op == "ctransform") { // spaces that are known only now
-        each([&](int l) {
-            Arguments a(s, lanes, in, l);
-            const auto lower = [](std::string t) {
-                for (char& c : t) c = char(std::tolower(static_cast<unsigned char>(c)));
-                return t;
-            };
-            const std::string from = lower(a.string()), to = lower(a.string());
-            const auto known = [](const std::string& t) {
-                return t == "rgb" || t == "hsv" || t == "hsl" || t == "yiq" || t == "xyz";
-            };
-            for (const std::string& t : {from, to})
-                if (!t.empty() && !known(t))
-                    diagnostics.reportOnce("ctransform:" + t,
-                                           {Severity::Warning,
-                                            Rie::NoError,
-                                            {file, s.place.line, s.place.column},
-                                            "there is no colour space \"" + t + "\"; the colour stays as it is",
-                                            "there are: rgb, hsv, hsl, yiq, xyz",
-                                            {}});
-            FormatValue v = a.value();
-            float c[3] = {v.numbers[0], v.numbers[1], v.numbers[2]}, r[3];
-            if (from != to && known(from) && known(to)) {
-                if (from != "rgb" && evaluateRuntime("al_" + from + "_to_rgb", c, 3, r, 3)) std::copy_n(r, 3, c);
-                if (to != "rgb" && evaluateRuntime("al_rgb_to_" + to, c, 3, r, 3)) std::copy_n(r, 3, c);
-            }
-            for (int k = 0; k < 3; k++) put(k, l, c[k]);
-        });
-    } else if (s.op == "stringhash") {
-        each([&](int l) {
-            Arguments a(s, lanes, in, l);
-            float h[3];
-            hashText(a.string(), h);
-            const int n = s.resultKinds.empty() ? 1 : std::min(3, ir::components(s.resultKinds[0]));
-            for (int c = 0; c < n; c++) put(c, l, h[c]);
-        });
-    } else {
-        return false;
-    }
-    return true;
+    return BasicCall(s, mask, lanes, in, out, diagnostics, print, files).answer();
 }
 
 } // namespace alpenglow::rsl

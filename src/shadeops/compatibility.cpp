@@ -15,27 +15,27 @@ std::string forTypes(const std::string& types, const std::string& text) {
     return all;
 }
 
-} // namespace
+/// Adds a shadeop with what most of these have in common.
+Shadeop& addCompatible(std::vector<Shadeop>& list, const char* name, const char* section, std::vector<Signature> signatures,
+                       Lowering lowering, const char* doc) {
+    Shadeop op;
+    op.section = section;
+    op.source = "PRMan";
+    op.name = name;
+    op.signatures = std::move(signatures);
+    op.contexts = kSurface | kVolume | kLight;
+    op.lowering = lowering;
+    op.derivative = lowering == Lowering::Rsl ? DerivativeRule::Inherent : DerivativeRule::ZeroWarn;
+    op.pure = false;
+    op.doc = doc;
+    list.push_back(std::move(op));
+    return list.back();
+}
 
-std::vector<Shadeop> compatibilityShadeops() {
-    std::vector<Shadeop> list;
-    const auto add = [&](const char* name, const char* section, std::vector<Signature> signatures, Lowering lowering,
-                         const char* doc) -> Shadeop& {
-        Shadeop op;
-        op.section = section;
-        op.source = "PRMan";
-        op.name = name;
-        op.signatures = std::move(signatures);
-        op.contexts = kSurface | kVolume | kLight;
-        op.lowering = lowering;
-        op.derivative = lowering == Lowering::Rsl ? DerivativeRule::Inherent : DerivativeRule::ZeroWarn;
-        op.pure = false;
-        op.doc = doc;
-        list.push_back(std::move(op));
-        return list.back();
-    };
-    Shadeop& normal = add("shadingnormal", "Geometry", sigs({{"normal shadingnormal(normal n)"}}), Lowering::Rsl,
-                          "n with length 1, turned toward the viewer where the surface has two sides (attribute \"Sides\").");
+void addShadingNormal(std::vector<Shadeop>& list) {
+    Shadeop& normal =
+        addCompatible(list, "shadingnormal", "Geometry", sigs({{"normal shadingnormal(normal n)"}}), Lowering::Rsl,
+                      "n with length 1, turned toward the viewer where the surface has two sides (attribute \"Sides\").");
     list.back().examples = {{"zcomp(shadingnormal(2 * N))", "-1"}};
     normal.contexts = kSurface | kDisplacement | kLight; // lights of PRMan send along the normal of what they light
     normal.rsl = R"(
@@ -47,9 +47,12 @@ normal shadingnormal(normal n) {
     return (sides == 1) ? one : faceforward(one, I, one);
 }
 )";
-    Shadeop& reverse =
-        add("reverse", "Arrays", each("float color point vector normal matrix string", "void reverse(output $ a[])"),
-            Lowering::Rsl, "Turns the order of the elements about.");
+}
+
+void addReverse(std::vector<Shadeop>& list) {
+    Shadeop& reverse = addCompatible(list, "reverse", "Arrays",
+                                     each("float color point vector normal matrix string", "void reverse(output $ a[])"),
+                                     Lowering::Rsl, "Turns the order of the elements about.");
     list.back().examples = {{"a[0]", "3", "float a[3] = {1, 2, 3}; reverse(a);"}};
     reverse.contexts = kAnyContext;
     reverse.rsl = forTypes("float color point vector normal matrix string", R"(
@@ -62,8 +65,11 @@ void reverse(output $ a[]) {
     }
 }
 )");
-    Shadeop& wnoise = add(
-        "wnoise", "Noise",
+}
+
+void addWnoise(std::vector<Shadeop>& list) {
+    Shadeop& wnoise = addCompatible(
+        list, "wnoise", "Noise",
         each("float color point vector normal", "$ wnoise(float x, float filterwidth; pairs)") +
             each("float color point vector normal", "$ wnoise(float x, float y, float filterwidth; pairs)") +
             each("float color point vector normal", "$ wnoise(point p; float filterwidth; pairs)") +
@@ -103,15 +109,18 @@ void reverse(output $ a[]) {
                                    "    }\n"
                                    "    return sum;\n"
                                    "}\n");
-    Shadeop& randomstrat =
-        add("randomstrat", "Mathematics",
-            each("float color point vector normal", "void randomstrat(uniform float first, uniform float end; output $ a[])"),
-            Lowering::Rsl,
-            "Fills the elements of a from the element `first` to the one before `end` with random numbers from 0 to 1 that are "
-            "spread evenly, in "
-            "random order: of n floats one lies in each nth of the range; of tuples the first two components cover the square, "
-            "the third is 0. "
-            "An array that may change its length becomes long enough.");
+}
+
+void addRandomstrat(std::vector<Shadeop>& list) {
+    Shadeop& randomstrat = addCompatible(
+        list, "randomstrat", "Mathematics",
+        each("float color point vector normal", "void randomstrat(uniform float first, uniform float end; output $ a[])"),
+        Lowering::Rsl,
+        "Fills the elements of a from the element `first` to the one before `end` with random numbers from 0 to 1 that are "
+        "spread evenly, in "
+        "random order: of n floats one lies in each nth of the range; of tuples the first two components cover the square, "
+        "the third is 0. "
+        "An array that may change its length becomes long enough.");
     randomstrat.examples = {{"floor(4 * min(a[0], a[1], a[2], a[3])) + floor(4 * max(a[0], a[1], a[2], a[3]))", "3",
                              "float a[4]; randomstrat(0, 4, a);"}};
     randomstrat.contexts = kAnyContext;
@@ -136,38 +145,58 @@ void randomstrat(uniform float first; uniform float end; output $ a[]) {
     }
 }
 )");
-    Shadeop& ptransform =
-        add("ptransform", "Geometry",
-            sigs({{"point ptransform(string tospace; point p)"},
-                  {"point ptransform(string fromspace, string tospace; point p)"},
-                  {"point ptransform(matrix m; point p)"},
-                  {"point ptransform(string fromspace; matrix m; point p)"}}),
-            Lowering::Special,
-            "transform() by the rule of points, whatever the type of the argument: its name in texts of the first years.");
+}
+
+void addPtransform(std::vector<Shadeop>& list) {
+    Shadeop& ptransform = addCompatible(
+        list, "ptransform", "Geometry",
+        sigs({{"point ptransform(string tospace; point p)"},
+              {"point ptransform(string fromspace, string tospace; point p)"},
+              {"point ptransform(matrix m; point p)"},
+              {"point ptransform(string fromspace; matrix m; point p)"}}),
+        Lowering::Special,
+        "transform() by the rule of points, whatever the type of the argument: its name in texts of the first years.");
     ptransform.source = "first RenderMan texts";
     ptransform.contexts = kAnyContext;
     ptransform.derivative = DerivativeRule::Inherent;
     ptransform.pure = true;
     ptransform.examples = {{"ptransform(translate(matrix(1), point(1, 2, 3)), point(1, 1, 1))", "2 3 4"}};
-    Shadeop& evalparam = add("evalparam", "Messages",
-                             each(kAllTypes, "float evalparam(string name; output $ value)") +
-                                 each(kAllTypes, "float evalparam(string name; output $ value[])"),
-                             Lowering::Special,
-                             "Parameter of the shader itself, or of the co-shader whose method runs. 1 on success; 0, and value "
-                             "untouched, when there is none of "
-                             "that name or the type does not fit.");
+}
+
+/// What a shader asks about itself.
+void addQuestions(std::vector<Shadeop>& list) {
+    Shadeop& evalparam =
+        addCompatible(list, "evalparam", "Messages",
+                      each(kAllTypes, "float evalparam(string name; output $ value)") +
+                          each(kAllTypes, "float evalparam(string name; output $ value[])"),
+                      Lowering::Special,
+                      "Parameter of the shader itself, or of the co-shader whose method runs. 1 on success; 0, and value "
+                      "untouched, when there is none of "
+                      "that name or the type does not fit.");
     evalparam.contexts = kAnyContext;
     evalparam.examples = {{"evalparam(\"none\", x) + x", "3", "float x = 3;"}};
-    Shadeop& shaderinfo =
-        add("shaderinfo", "Messages", each("float string", "float shaderinfo(string name; output $ answer)"), Lowering::Rsl,
-            "What PRMan tells about the shader that runs (\"pipelinestage\", \"shadername\"). Nothing is known by these names: "
-            "the result is 0, and "
-            "answer stays as it was.");
+    Shadeop& shaderinfo = addCompatible(
+        list, "shaderinfo", "Messages", each("float string", "float shaderinfo(string name; output $ answer)"), Lowering::Rsl,
+        "What PRMan tells about the shader that runs (\"pipelinestage\", \"shadername\"). Nothing is known by these names: "
+        "the result is 0, and "
+        "answer stays as it was.");
     list.back().examples = {{"shaderinfo(\"shadername\", x)", "0", "string x = \"none\";"},
                             {"x", "none", "string x = \"none\"; shaderinfo(\"pipelinestage\", x);"}};
     shaderinfo.contexts = kAnyContext;
     shaderinfo.rsl = "float shaderinfo(string name; output float answer) { return 0; }\nfloat shaderinfo(string name; output "
                      "string answer) { return 0; }\n";
+}
+
+} // namespace
+
+std::vector<Shadeop> compatibilityShadeops() {
+    std::vector<Shadeop> list;
+    addShadingNormal(list);
+    addReverse(list);
+    addWnoise(list);
+    addRandomstrat(list);
+    addPtransform(list);
+    addQuestions(list);
     return list;
 }
 

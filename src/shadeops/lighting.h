@@ -37,32 +37,39 @@ AL_RUNTIME(al_fresnelrt, opFresnelRt)
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {
-std::vector<Shadeop> lightingShadeops() {
-    std::vector<Shadeop> list;
-    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
-        Shadeop op;
-        op.section = "Lighting";
-        op.source = "3Delight manual, 6.4.4";
-        op.name = name;
-        op.signatures = std::move(signatures);
-        op.contexts = kSurface | kVolume;
-        op.lowering = lowering;
-        op.derivative = lowering == Lowering::Runtime ? DerivativeRule::Jet
-                        : lowering == Lowering::Rsl   ? DerivativeRule::Inherent
-                                                      : DerivativeRule::ZeroWarn;
-        op.doc = doc;
-        list.push_back(std::move(op));
-        return list.back();
-    };
-    add("ambient", sigs({{"color ambient()"}}), Lowering::Service,
+namespace {
+
+/// Adds a shadeop with what most of the section have in common.
+Shadeop& addLighting(std::vector<Shadeop>& list, const char* name, std::vector<Signature> signatures, Lowering lowering,
+                     const char* doc) {
+    Shadeop op;
+    op.section = "Lighting";
+    op.source = "3Delight manual, 6.4.4";
+    op.name = name;
+    op.signatures = std::move(signatures);
+    op.contexts = kSurface | kVolume;
+    op.lowering = lowering;
+    op.derivative = lowering == Lowering::Runtime ? DerivativeRule::Jet
+                    : lowering == Lowering::Rsl   ? DerivativeRule::Inherent
+                                                  : DerivativeRule::ZeroWarn;
+    op.doc = doc;
+    list.push_back(std::move(op));
+    return list.back();
+}
+
+/// Light without highlights.
+void addDiffuseLight(std::vector<Shadeop>& list) {
+    addLighting(
+        list, "ambient", sigs({{"color ambient()"}}), Lowering::Service,
         "Sum of Cl over the ambient lights: those without illuminate() and solar(). Under path, what of it comes through: the "
         "part of the hemisphere about N that surfaces block is dark. No other shadeop finds ambient light.");
     list.back().examples = {{"ambient()", "0.2 0.2 0.2", "", "there is one light \"ambientlight\" of intensity 0.2"}};
 
-    Shadeop& diffuse = add("diffuse", sigs({{"color diffuse(vector n)"}}), Lowering::Rsl,
-                           "Sum over lights of Cl max(0, n . L) (1 - __nondiffuse), L unit; no 1/PI. n is unit. Under path the "
-                           "indirect light of the "
-                           "same lobe is added by the light transport engine.");
+    Shadeop& diffuse =
+        addLighting(list, "diffuse", sigs({{"color diffuse(vector n)"}}), Lowering::Rsl,
+                    "Sum over lights of Cl max(0, n . L) (1 - __nondiffuse), L unit; no 1/PI. n is unit. Under path the "
+                    "indirect light of the "
+                    "same lobe is added by the light transport engine.");
     list.back().examples = {{"diffuse(N)", "1 1 1", "", kOneLight}};
     diffuse.rsl = R"(
 color diffuse(vector n) {
@@ -78,9 +85,12 @@ color diffuse(vector n) {
     return sum;
 }
 )";
-    Shadeop& specular =
-        add("specular", sigs({{"color specular(vector n, vector v; float roughness)"}}), Lowering::Rsl,
-            "Sum over lights of Cl specularbrdf(L, n, v, roughness) (1 - __nonspecular). n and v are unit, v toward the eye.");
+}
+
+void addSpecular(std::vector<Shadeop>& list) {
+    Shadeop& specular = addLighting(
+        list, "specular", sigs({{"color specular(vector n, vector v; float roughness)"}}), Lowering::Rsl,
+        "Sum over lights of Cl specularbrdf(L, n, v, roughness) (1 - __nonspecular). n and v are unit, v toward the eye.");
     list.back().examples = {{"specular(N, N, 0.1)", "1 1 1", "", kOneLight}};
     specular.source = "3Delight manual, 6.4.4, which does not publish its model; see specularbrdf";
     specular.rsl = R"(
@@ -97,8 +107,8 @@ color specular(vector n, v; float roughness) {
     return sum;
 }
 )";
-    Shadeop& brdf = add(
-        "specularbrdf", sigs({{"color specularbrdf(vector l, vector n, vector v; float roughness)", "al_specularbrdf"}}),
+    Shadeop& brdf = addLighting(
+        list, "specularbrdf", sigs({{"color specularbrdf(vector l, vector n, vector v; float roughness)", "al_specularbrdf"}}),
         Lowering::Runtime,
         "One direction of specular(): pow(max(0, n . h), 8 / roughness), h = normalize(l + v), l, n, v unit. 0 for roughness 0. "
         "1 / roughness, as RISpec prints it, with Option \"shade\" \"specular\" \"rispec\" or --dialect rispec.");
@@ -106,9 +116,14 @@ color specular(vector n, v; float roughness) {
     brdf.contexts = kAnyContext;
     brdf.examples = {{"specularbrdf(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0.1)", "1 1 1"},
                      {"specularbrdf(vector(1,0,0), vector(0,0,1), vector(0,0,1), 4)", "0.5 0.5 0.5"}};
-    Shadeop& standard = add("specularstd", sigs({{"color specularstd(normal n; vector v; float roughness)"}}), Lowering::Rsl,
-                            "The text-book model: sum over lights of Cl pow(max(0, n . h), 1 / roughness) (1 - __nonspecular), h "
-                            "= normalize(normalize(L) + v).");
+}
+
+/// Highlights of other models.
+void addHighlights(std::vector<Shadeop>& list) {
+    Shadeop& standard =
+        addLighting(list, "specularstd", sigs({{"color specularstd(normal n; vector v; float roughness)"}}), Lowering::Rsl,
+                    "The text-book model: sum over lights of Cl pow(max(0, n . h), 1 / roughness) (1 - __nonspecular), h "
+                    "= normalize(normalize(L) + v).");
     list.back().examples = {{"specularstd(N, N, 0.1)", "1 1 1", "", kOneLight}};
     standard.rsl = R"(
 color specularstd(normal n; vector v; float roughness) {
@@ -127,9 +142,9 @@ color specularstd(normal n; vector v; float roughness) {
     return sum;
 }
 )";
-    Shadeop& phong =
-        add("phong", sigs({{"color phong(vector n, vector v; float size)"}}), Lowering::Rsl,
-            "Phong's highlight: sum over lights of Cl pow(max(0, r . L), size) (1 - __nonspecular), r = reflect(-v, n), L unit.");
+    Shadeop& phong = addLighting(
+        list, "phong", sigs({{"color phong(vector n, vector v; float size)"}}), Lowering::Rsl,
+        "Phong's highlight: sum over lights of Cl pow(max(0, r . L), size) (1 - __nonspecular), r = reflect(-v, n), L unit.");
     list.back().examples = {{"phong(N, N, 10)", "1 1 1", "", kOneLight}};
     phong.rsl = R"(
 color phong(vector n, v; float size) {
@@ -146,15 +161,20 @@ color phong(vector n, v; float size) {
     return sum;
 }
 )";
-    Shadeop& bsdf = add("bsdf", sigs({{"color bsdf(vector l; normal n; pairs)"}, {"color[] bsdf(vector l; normal n; pairs)"}}),
-                        Lowering::Special,
-                        "One of the distributions of trace() for a single direction l toward the light: the reflection function "
-                        "times the cosine n . l, so "
-                        "that PI bsdf(\"oren-nayar\", roughness 0) is the weight of diffuse(). An array gets the parts of "
-                        "glass-ggx (reflected, refracted) or of hair "
-                        "(one a lobe). wo defaults to -I. samplecone (uniform, cosine) defaults to PI/2. What lies beyond the "
-                        "plane of \"horizon\" is 0. The "
-                        "hidden shadeops __bsdf_NAME document each distribution.");
+}
+
+/// What a surface does with light of one direction.
+void addReflectance(std::vector<Shadeop>& list) {
+    Shadeop& bsdf =
+        addLighting(list, "bsdf", sigs({{"color bsdf(vector l; normal n; pairs)"}, {"color[] bsdf(vector l; normal n; pairs)"}}),
+                    Lowering::Special,
+                    "One of the distributions of trace() for a single direction l toward the light: the reflection function "
+                    "times the cosine n . l, so "
+                    "that PI bsdf(\"oren-nayar\", roughness 0) is the weight of diffuse(). An array gets the parts of "
+                    "glass-ggx (reflected, refracted) or of hair "
+                    "(one a lobe). wo defaults to -I. samplecone (uniform, cosine) defaults to PI/2. What lies beyond the "
+                    "plane of \"horizon\" is 0. The "
+                    "hidden shadeops __bsdf_NAME document each distribution.");
     bsdf.source = "3Delight manual, 6.4.4 and 6.4.5.2; models: docs/design/rsl.md";
     bsdf.derivative = DerivativeRule::Inherent;
     bsdf.optional = distributionParameters();
@@ -162,8 +182,8 @@ color phong(vector n, v; float size) {
         {{Base::Float, 0}, "samplecone", false, "PI/2", "half angle of the cone of uniform and cosine, radians"});
     bsdf.examples = {{"bsdf(vector(0,0,1), normal(0,0,1), \"distribution\", \"cosine\")", "0.3183099 0.3183099 0.3183099"}};
 
-    Shadeop& fresnel = add(
-        "fresnel",
+    Shadeop& fresnel = addLighting(
+        list, "fresnel",
         sigs({{"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt)", "al_fresnel"},
               {"void fresnel(vector i, vector n; float eta; output float Kr, output float Kt; output vector R, output vector T)",
                "al_fresnelrt"}}),
@@ -175,6 +195,16 @@ color phong(vector n, v; float size) {
         {"round(kr * 9)", "1", "float kr = 0, kt = 0; fresnel(vector(0, 0, 1), vector(0, 0, -1), 0.5, kr, kt);"}};
     fresnel.contexts = kAnyContext;
     fresnel.source = "3Delight manual, 6.4.4; Kt = 1 - Kr is ours";
+}
+
+} // namespace
+
+std::vector<Shadeop> lightingShadeops() {
+    std::vector<Shadeop> list;
+    addDiffuseLight(list);
+    addSpecular(list);
+    addHighlights(list);
+    addReflectance(list);
     return list;
 }
 } // namespace alpenglow::rsl

@@ -184,10 +184,9 @@ Shadeop flatOp(Shadeop op) {
     op.derivative = DerivativeRule::Zero;
     return op;
 }
-} // namespace
 
-std::vector<Shadeop> mathematicsShadeops() {
-    std::vector<Shadeop> list;
+/// Angles and their functions.
+void addAngles(std::vector<Shadeop>& list) {
     list.push_back(mathOp("radians", {{"float radians(float degrees)", "al_radians"}}, "Degrees to radians: degrees * PI / 180.",
                           kManual, {{"radians(180)", "3.141593"}}));
     list.push_back(mathOp("degrees", {{"float degrees(float radians)", "al_degrees"}}, "Radians to degrees: radians * 180 / PI.",
@@ -209,6 +208,10 @@ std::vector<Shadeop> mathematicsShadeops() {
     list.push_back(mathOp("atan", {{"float atan(float a)", "al_atan"}, {"float atan(float y, float x)", "al_atan2"}},
                           "Arc tangent of a, -PI/2..PI/2; or of y/x in the right quadrant, -PI..PI. atan(0, 0) is 0.", kManual,
                           {{"atan(1)", "0.7853982"}, {"atan(1, -1)", "2.356194"}}));
+}
+
+/// Roots, powers and logarithms.
+void addPowers(std::vector<Shadeop>& list) {
     list.push_back(mathOp("sqrt", {{"float sqrt(float x)", "al_sqrt"}},
                           "Square root; 0 for x < 0. The derivative at 0 is taken as 0.", kManual,
                           {{"sqrt(2)", "1.414214"}, {"sqrt(-1)", "0"}}));
@@ -228,6 +231,10 @@ std::vector<Shadeop> mathematicsShadeops() {
         "0 in base 1 and in bases that are not positive, which have no logarithm. Numbers too small for a normal float count as "
         "0.",
         kManual, {{"log(10)", "2.302585"}, {"log(8, 2)", "3"}, {"log(8, 0.5)", "-3"}, {"log(-8, 0.5)", "-inf"}}));
+}
+
+/// Signs, remainders and whole numbers.
+void addRounding(std::vector<Shadeop>& list) {
     list.push_back(flatOp(mathOp("sign", {{"float sign(float x)", "al_sign"}}, "-1 for x < 0, 1 otherwise: 0 counts as positive.",
                                  kManual, {{"sign(-3)", "-1"}, {"sign(0)", "1"}})));
     list.push_back(mathOp("mod", {{"float mod(float x, float y)", "al_mod"}},
@@ -245,7 +252,10 @@ std::vector<Shadeop> mathematicsShadeops() {
         mathOp("ceil", {{"float ceil(float x)", "al_ceil"}}, "Smallest integer not below x.", kManual, {{"ceil(1.25)", "2"}})));
     list.push_back(flatOp(mathOp("round", {{"float round(float x)", "al_round"}}, "Nearest integer, halves away from zero.",
                                  "3Delight manual, 6.4.1; halves are ours", {{"round(2.5)", "3"}, {"round(-2.5)", "-3"}})));
+}
 
+/// Choices between values, and steps from one to another.
+void addRanges(std::vector<Shadeop>& list) {
     Shadeop op = mathOp("min", {}, "Smallest of two or more values of one type; tuples component by component.", kManual,
                         {{"min(1, 2)", "1"}, {"min(point(1,2,3), point(4,3,2))", "1 2 2"}});
     op.signatures = each(kFloatAndTuples, "$ min($ a, $ b, ...)", "al_min");
@@ -274,14 +284,29 @@ std::vector<Shadeop> mathematicsShadeops() {
                     each(kTuples, "$ mix($ x, $ y, float alpha)", "al_mixf") +
                     each(kTuples, "$ mix($ x, $ y, $ alpha)", "al_mix");
     list.push_back(op);
+}
+
+/// The filters of filterstep().
+void addFilteredSteps(std::vector<Shadeop>& list) {
     for (const char* filter : {"catmullrom", "box", "triangle", "gaussian"}) {
         const std::string name = std::string("__filterstep_") + filter;
-        op = mathOp(name.c_str(), {}, "step(edge, value) filtered over value1..value2; filterstep() calls it.",
-                    "3Delight manual, 6.4.1", {});
+        Shadeop op = mathOp(name.c_str(), {}, "step(edge, value) filtered over value1..value2; filterstep() calls it.",
+                            "3Delight manual, 6.4.1", {});
         op.signatures = {
             parseSignature("float " + name + "(float edge, float value1, float value2)", std::string("al_filterstep_") + filter)};
         list.push_back(op);
     }
+}
+
+} // namespace
+
+std::vector<Shadeop> mathematicsShadeops() {
+    std::vector<Shadeop> list;
+    addAngles(list);
+    addPowers(list);
+    addRounding(list);
+    addRanges(list);
+    addFilteredSteps(list);
     return list;
 }
 } // namespace alpenglow::rsl

@@ -293,27 +293,27 @@ std::vector<OptionalParameter> specularParameters() {
             {kS, "integrationdomain", false, "\"\"", "accepted and ignored: the samples say where rays go"}};
 }
 
-} // namespace
+/// Adds a shadeop written in RSL; AXES in its text stands for kAxes.
+Shadeop& addSampleOp(std::vector<Shadeop>& list, const char* name, std::vector<Signature> signatures, std::string text,
+                     const char* doc) {
+    Shadeop op;
+    op.section = "Ray tracing";
+    op.source = "PRMan";
+    op.name = name;
+    op.signatures = std::move(signatures);
+    op.contexts = kSurface | kVolume | kLight;
+    op.lowering = Lowering::Rsl;
+    op.derivative = DerivativeRule::Inherent;
+    op.pure = false;
+    op.doc = doc;
+    op.rsl = with(std::move(text), "AXES", kAxes);
+    list.push_back(std::move(op));
+    return list.back();
+}
 
-std::vector<Shadeop> radianceSampleShadeops() {
-    std::vector<Shadeop> list;
-    const auto add = [&](const char* name, std::vector<Signature> signatures, std::string text, const char* doc) -> Shadeop& {
-        Shadeop op;
-        op.section = "Ray tracing";
-        op.source = "PRMan";
-        op.name = name;
-        op.signatures = std::move(signatures);
-        op.contexts = kSurface | kVolume | kLight;
-        op.lowering = Lowering::Rsl;
-        op.derivative = DerivativeRule::Inherent;
-        op.pure = false;
-        op.doc = doc;
-        op.rsl = with(std::move(text), "AXES", kAxes);
-        list.push_back(std::move(op));
-        return list.back();
-    };
-    Shadeop& emit = add(
-        "emit", sigs({{"void emit(color light; pairs)"}}),
+void addEmit(std::vector<Shadeop>& list) {
+    Shadeop& emit = addSampleOp(
+        list, "emit", sigs({{"void emit(color light; pairs)"}}),
         "void emit(color light; float specularcontribution; float diffusecontribution; float raytraceshadows; float shadowbias; "
         "float adaptiveshadow; "
         "float shadowmapbias; float shadowmapbias2; float areanormalized; string environmentmap) {}\n",
@@ -332,15 +332,19 @@ std::vector<Shadeop> radianceSampleShadeops() {
                      {kF, "shadowmapbias2", false, "", "hint"},
                      {kF, "areanormalized", false, "0", "read over: light is the radiance, not divided by the area"},
                      {kS, "environmentmap", false, "", "hint"}};
-    Shadeop& shadow = add("areashadow", sigs({{"color areashadow(point lit; float samples)"}}), shadowText(),
-                          "The form with samples multiplies the radiance of each sample of a light by what reaches the point in "
-                          "the middle of the region (a filterregion, or the "
-                          "point) from there: by a shadow map, or by rays where the map is \"\" or \"raytrace\". Class lights "
-                          "call it in shadowSamples(), which "
-                          "runs behind their generateSamples(). Under path all lights have traced shadows, so that rays are not "
-                          "sent twice. The other form is that of "
-                          "BMRT's ray server (rayserver.h), in lights: how much of the light that L comes from reaches the point "
-                          "that is lit, traced; 1 is all.");
+}
+
+void addAreaShadow(std::vector<Shadeop>& list) {
+    Shadeop& shadow =
+        addSampleOp(list, "areashadow", sigs({{"color areashadow(point lit; float samples)"}}), shadowText(),
+                    "The form with samples multiplies the radiance of each sample of a light by what reaches the point in "
+                    "the middle of the region (a filterregion, or the "
+                    "point) from there: by a shadow map, or by rays where the map is \"\" or \"raytrace\". Class lights "
+                    "call it in shadowSamples(), which "
+                    "runs behind their generateSamples(). Under path all lights have traced shadows, so that rays are not "
+                    "sent twice. The other form is that of "
+                    "BMRT's ray server (rayserver.h), in lights: how much of the light that L comes from reaches the point "
+                    "that is lit, traced; 1 is all.");
     shadow.signatures.push_back(ofSamples("void areashadow(string map; vector region; SAMPLES; pairs)"));
     shadow.source = "BMRT, PRMan";
     shadow.examples = {{"areashadow(Ps, 4)", "1 1 1", "", "a light asks and nothing stands between it and Ps"}};
@@ -351,6 +355,10 @@ std::vector<Shadeop> radianceSampleShadeops() {
                        {kS, "label", false, "\"\"", "of the rays, for rayinfo()"},
                        {kS, "subset", false, "\"\"", "groups of objects that the rays may meet"},
                        {kS, "hitmode", false, "\"default\"", "of the rays: primitive, shader or default"}};
+}
+
+/// Samples of an environment.
+void addSkySampling(std::vector<Shadeop>& list) {
     const std::vector<OptionalParameter> sky = {
         {kS, "environmentspace", false, "\"\"", "space of the map, taken as a rotation; none: current"},
         {kS, "distribution", false, "\"\"", "cosine or uniform; all others: in proportion to the light of the map"},
@@ -358,7 +366,8 @@ std::vector<Shadeop> radianceSampleShadeops() {
         {kC, "scale", false, "1", "multiplies the map"},
         {kS, "integrationdomain", false, "\"\"",
          "words that begin with \"spher\": all directions; else light comes from the side of n alone"}};
-    add("generateSamplesEnv",
+    addSampleOp(
+        list, "generateSamplesEnv",
         {ofSamples("void generateSamplesEnv(string map; point p; normal n; uniform float count; SAMPLES; pairs)")}, skyText(),
         "Adds samples of an environment to the array: directions, distances, radiances, and lightPdf, the density per steradian "
         "with which a direction is drawn. Without "
@@ -368,13 +377,20 @@ std::vector<Shadeop> radianceSampleShadeops() {
         .examples = {{"arraylength(s) * s[3]->lightPdf / max(0, s[3]->direction . normalize(N))", "1.273239",
                       "__radiancesample s[]; generateSamplesEnv(\"\", P, N, 4, s);"}};
     list.back().optional = sky;
-    add("evaluateSamplesEnv", {ofSamples("void evaluateSamplesEnv(string map; point p; normal n; SAMPLES; pairs)")}, skyText(),
+    addSampleOp(
+        list, "evaluateSamplesEnv", {ofSamples("void evaluateSamplesEnv(string map; point p; normal n; SAMPLES; pairs)")},
+        skyText(),
         "Radiance, distance and lightPdf of samples whose directions are known: what generateSamplesEnv() would have said of "
         "them.")
         .examples = {{"s[0]->lightPdf", "0.3183099",
                       "__radiancesample s[1]; s[0]->direction = vector(N); evaluateSamplesEnv(\"\", P, N, s);"}};
     list.back().optional = sky;
-    add("generateSamplesAS",
+}
+
+/// Samples of the lobe of Ashikhmin and Shirley.
+void addLobeSamples(std::vector<Shadeop>& list) {
+    addSampleOp(
+        list, "generateSamplesAS",
         {ofSamples("void generateSamplesAS(color response; uniform float count; float exponentU, exponentV; vector lobe, "
                    "tangent, view; SAMPLES)")},
         lobeText(),
@@ -383,12 +399,17 @@ std::vector<Shadeop> radianceSampleShadeops() {
         "`lobe`, which is its axis; no Fresnel) and materialPdf, the density per steradian of the facets that mirror view there.")
         .examples = {{"comp(s[0]->materialResponse, 0) / (s[0]->materialPdf * s[0]->direction . N)", "2",
                       "__radiancesample s[]; generateSamplesAS(2, 1, 1000, 1000, vector(N), dPdu, vector(N), s);"}};
-    add("evaluateSamplesAS",
+    addSampleOp(
+        list, "evaluateSamplesAS",
         {ofSamples("void evaluateSamplesAS(color response; float exponentU, exponentV; vector lobe, tangent, view; SAMPLES)")},
         lobeText(), "materialResponse and materialPdf of samples whose directions are known, as generateSamplesAS() gives them.")
         .examples = {
         {"s[0]->materialPdf", "0.4376761",
          "__radiancesample s[1]; s[0]->direction = vector(N); evaluateSamplesAS(1, 10, 10, vector(N), dPdu, vector(N), s);"}};
+}
+
+/// What asks a shader object about the light of all lights, or of rays.
+void addLightSums(std::vector<Shadeop>& list) {
     const std::vector<OptionalParameter> results = {
         {kC, "diffuseresult", true, "", "light times the diffuse material"},
         {kC, "specularresult", true, "", "light times the specular material"},
@@ -407,21 +428,33 @@ std::vector<Shadeop> radianceSampleShadeops() {
                  {"specularlighting", "The specular part of directlighting()."}};
     for (const auto& sum : kSums) {
         const std::string n = sum.name;
-        Shadeop& op = add(sum.name,
-                          sigs({{("color " + n + "(shader handle; pairs)").c_str()},
-                                {("color " + n + "(shader handle; shader lights[]; pairs)").c_str()}}),
-                          lightingText(), sum.doc);
+        Shadeop& op = addSampleOp(list, sum.name,
+                                  sigs({{("color " + n + "(shader handle; pairs)").c_str()},
+                                        {("color " + n + "(shader handle; shader lights[]; pairs)").c_str()}}),
+                                  lightingText(), sum.doc);
         op.contexts = kSurface;
         op.optional = results;
         op.examples = {{n + "(getshader(\"none\"))", "0 0 0"}};
     }
-    Shadeop& specular = add("indirectspecular", sigs({{"color indirectspecular(shader handle; pairs)"}}), kSpecularText,
-                            "Light along the directions that the method generateSamples(\"specular\", samples) of the shader "
-                            "object gives, by trace(): the mean of materialResponse "
-                            "over materialPdf times what arrives from there. `this`, or any handle.");
+    Shadeop& specular =
+        addSampleOp(list, "indirectspecular", sigs({{"color indirectspecular(shader handle; pairs)"}}), kSpecularText,
+                    "Light along the directions that the method generateSamples(\"specular\", samples) of the shader "
+                    "object gives, by trace(): the mean of materialResponse "
+                    "over materialPdf times what arrives from there. `this`, or any handle.");
     specular.contexts = kSurface;
     specular.optional = specularParameters();
     specular.examples = {{"indirectspecular(getshader(\"none\"))", "0 0 0"}};
+}
+
+} // namespace
+
+std::vector<Shadeop> radianceSampleShadeops() {
+    std::vector<Shadeop> list;
+    addEmit(list);
+    addAreaShadow(list);
+    addSkySampling(list);
+    addLobeSamples(list);
+    addLightSums(list);
     return list;
 }
 

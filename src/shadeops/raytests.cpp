@@ -2,27 +2,30 @@
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {
+namespace {
 
-std::vector<Shadeop> rayTestShadeops() {
-    std::vector<Shadeop> list;
-    const auto add = [&](const char* name, const char* signature, const char* doc, const char* source,
-                         const char* rsl) -> Shadeop& {
-        Shadeop op;
-        op.section = "Ray tracing";
-        op.source = source;
-        op.name = name;
-        op.signatures = sigs({{signature}});
-        op.contexts = kSurface | kVolume | kLight;
-        op.lowering = Lowering::Rsl;
-        op.derivative = DerivativeRule::Inherent;
-        op.pure = false;
-        op.doc = doc;
-        op.rsl = rsl;
-        list.push_back(std::move(op));
-        return list.back();
-    };
-    add("visibility", "color visibility(point a, point b; pairs)", "Visibility between two points: transmission(a, b).", "BMRT",
-        R"(
+/// Adds a shadeop written in RSL.
+Shadeop& addRayTest(std::vector<Shadeop>& list, const char* name, const char* signature, const char* doc, const char* source,
+                    const char* rsl) {
+    Shadeop op;
+    op.section = "Ray tracing";
+    op.source = source;
+    op.name = name;
+    op.signatures = sigs({{signature}});
+    op.contexts = kSurface | kVolume | kLight;
+    op.lowering = Lowering::Rsl;
+    op.derivative = DerivativeRule::Inherent;
+    op.pure = false;
+    op.doc = doc;
+    op.rsl = rsl;
+    list.push_back(std::move(op));
+    return list.back();
+}
+
+void addVisibility(std::vector<Shadeop>& list) {
+    addRayTest(list, "visibility", "color visibility(point a, point b; pairs)",
+               "Visibility between two points: transmission(a, b).", "BMRT",
+               R"(
 color visibility(point a; point b; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias;
                  float maxdist) {
     return transmission(a, b, "label", label, "subset", subset, "excludesubset", excludesubset, "hitmode", hitmode,
@@ -30,7 +33,12 @@ color visibility(point a; point b; string label; string subset; string excludesu
 }
 )");
     list.back().examples = {{"visibility(P, P + N)", "1 1 1", "", kNothing}};
-    add("rayhittest", "float rayhittest(point from; vector dir; output point Ph, output vector Nh; pairs)",
+}
+
+/// Where a ray meets something.
+void addHitTests(std::vector<Shadeop>& list) {
+    addRayTest(
+        list, "rayhittest", "float rayhittest(point from; vector dir; output point Ph, output vector Nh; pairs)",
         "Distance from `from` along dir to the nearest surface that is visible to transmission rays, in units of length; above "
         "1e30 for none. Ph becomes "
         "the point that was hit, Nh the normal there; both stay as they are when nothing was hit.",
@@ -50,7 +58,8 @@ float rayhittest(point from; vector dir; output point Ph; output vector Nh; stri
 }
 )");
     list.back().examples = {{"rayhittest(P, N, p, n)", "2", "point p = 0; vector n = 0;", "a surface stands 2 away along N"}};
-    add("fulltrace",
+    addRayTest(
+        list, "fulltrace",
         "float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector "
         "Nhit; output point Pmiss; output "
         "vector Rmiss; pairs)",
@@ -81,8 +90,12 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
 )");
     list.back().examples = {{"fulltrace(P, N, c, d, p, n, m, r)", "0",
                              "color c = 0; float d = 0; point p = 0, m = 0; vector n = 0, r = 0;", kNothing}};
+}
+
+/// Of those so far: BMRT had no optional parameters.
+void addRayOptions(std::vector<Shadeop>& list) {
     const Type text{Base::String, 0}, real{Base::Float, 0};
-    for (Shadeop& op : list) // BMRT had none; those of trace() are as good here. The texts take them in this order
+    for (Shadeop& op : list) // those of trace() are as good here. The texts take them in this order
         op.optional = {{text, "label", false, "\"\"", "label of the ray, for rayinfo"},
                        {text, "subset", false, "\"\"", "groups of objects considered"},
                        {text, "excludesubset", false, "\"\"", "groups of objects left out"},
@@ -90,11 +103,15 @@ float fulltrace(point pos; vector dir; output color hitcolor; output float hitdi
                        {text, "hitsides", false, "", "front, back, both or reversed"},
                        {real, "bias", false, "-1", "offset of the ray's start"},
                        {real, "maxdist", false, "1e38", "no intersections beyond this distance"}};
-    Shadeop& bump = add("bump", "point bump(string name; normal norm; vector dPds, vector dPdt; pairs)",
-                        "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first "
-                        "channel of the texture "
-                        "is read at s, t (or at ss, tt) and beside them, and its slopes along dPds and dPdt tilt the normal.",
-                        "RISpec 3.0 (bump maps); the formula is ours", R"(
+}
+
+void addBump(std::vector<Shadeop>& list) {
+    Shadeop& bump =
+        addRayTest(list, "bump", "point bump(string name; normal norm; vector dPds, vector dPdt; pairs)",
+                   "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first "
+                   "channel of the texture "
+                   "is read at s, t (or at ss, tt) and beside them, and its slopes along dPds and dPdt tilt the normal.",
+                   "RISpec 3.0 (bump maps); the formula is ours", R"(
 point bump(string name; normal norm; vector dPds; vector dPdt; float ss; float tt; float blur; float width) {
     float d = 1 / 1024;
     float h(float x; float y) {
@@ -122,6 +139,16 @@ point bump(string name; normal norm; vector dPds; vector dPdt; float blur; float
     bump.contexts = kAnyContext;
     bump.bias = Bias::Biased;
     bump.biasReason = "values are filtered over the footprint before they are used";
+}
+
+} // namespace
+
+std::vector<Shadeop> rayTestShadeops() {
+    std::vector<Shadeop> list;
+    addVisibility(list);
+    addHitTests(list);
+    addRayOptions(list);
+    addBump(list);
     return list;
 }
 

@@ -141,35 +141,40 @@ std::vector<OptionalParameter> distributionParameters() {
             {kFs, "lobeparameters", false, "{}", "hair: 4 values per lobe; glass-ggx: reflection and refraction weights"}};
 }
 
-std::vector<Shadeop> raytracingShadeops() {
-    std::vector<Shadeop> list;
-    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
-        Shadeop op;
-        op.section = "Ray tracing";
-        op.source = "3Delight manual, 6.4.5";
-        op.name = name;
-        op.signatures = std::move(signatures);
-        op.contexts = kSurface | kVolume | kLight;
-        op.lowering = lowering;
-        op.derivative = DerivativeRule::ZeroWarn;
-        op.pure = false; // each call draws its own random numbers
-        op.doc = doc;
-        op.optional = rayParameters(std::string_view(name) == "transmission" ? "\"transmission\"" : "\"specular\"");
-        list.push_back(std::move(op));
-        return list.back();
-    };
-    Shadeop& trace = add("trace",
-                         sigs({{"color trace(point p; vector r; pairs)"},
-                               {"color trace(point p; vector r; output float dist; pairs)"},
-                               {"color[] trace(point p; vector r; pairs)"},
-                               {"color[] trace(point p; vector r; output float dist; pairs)"},
-                               {"float trace(point p; vector r)"}}),
-                         Lowering::Request,
-                         "Light arriving at p from direction r, or gathered over a distribution about r. An array gets the parts "
-                         "of glass-ggx (reflected, refracted) or of hair (one a lobe), each by rays of its own. dist: distance "
-                         "of the nearest hit, above 1e30 for none. "
-                         "The float form is that distance, among objects visible to transmission. Current space. From the zero "
-                         "vector comes nothing.");
+namespace {
+
+/// Adds a shadeop with the optional parameters of rays.
+Shadeop& addRays(std::vector<Shadeop>& list, const char* name, std::vector<Signature> signatures, Lowering lowering,
+                 const char* doc) {
+    Shadeop op;
+    op.section = "Ray tracing";
+    op.source = "3Delight manual, 6.4.5";
+    op.name = name;
+    op.signatures = std::move(signatures);
+    op.contexts = kSurface | kVolume | kLight;
+    op.lowering = lowering;
+    op.derivative = DerivativeRule::ZeroWarn;
+    op.pure = false; // each call draws its own random numbers
+    op.doc = doc;
+    op.optional = rayParameters(std::string_view(name) == "transmission" ? "\"transmission\"" : "\"specular\"");
+    list.push_back(std::move(op));
+    return list.back();
+}
+
+void addTrace(std::vector<Shadeop>& list) {
+    Shadeop& trace =
+        addRays(list, "trace",
+                sigs({{"color trace(point p; vector r; pairs)"},
+                      {"color trace(point p; vector r; output float dist; pairs)"},
+                      {"color[] trace(point p; vector r; pairs)"},
+                      {"color[] trace(point p; vector r; output float dist; pairs)"},
+                      {"float trace(point p; vector r)"}}),
+                Lowering::Request,
+                "Light arriving at p from direction r, or gathered over a distribution about r. An array gets the parts "
+                "of glass-ggx (reflected, refracted) or of hair (one a lobe), each by rays of its own. dist: distance "
+                "of the nearest hit, above 1e30 for none. "
+                "The float form is that distance, among objects visible to transmission. Current space. From the zero "
+                "vector comes nothing.");
     list.back().examples = {{"trace(P, N)", "1 1 1", "", kWhite}};
     trace.lastResort = {Base::Float};
     trace.optional = trace.optional + distributionParameters() + lightParameters() +
@@ -185,12 +190,16 @@ std::vector<Shadeop> raytracingShadeops() {
                          {kC, "unshadowedenvironment", true, "", "the same without geometry"},
                          {kC, "arealightcontribution", true, "", "part of the area lights"},
                          {kC, "unshadowedarealight", true, "", "the same without geometry"}};
-    add("transmission", sigs({{"color transmission(point a, point b; pairs)"}}), Lowering::Request,
-        "Visibility between a and b among objects visible to transmission: 1 free, 0 blocked, a colour through translucent "
-        "surfaces.");
+    addRays(list, "transmission", sigs({{"color transmission(point a, point b; pairs)"}}), Lowering::Request,
+            "Visibility between a and b among objects visible to transmission: 1 free, 0 blocked, a colour through translucent "
+            "surfaces.");
     list.back().examples = {{"transmission(P, P + N)", "1 1 1", "", kNothing}};
-    Shadeop& occlusion = add(
-        "occlusion",
+}
+
+/// Light and its absence over a hemisphere.
+void addHemispheres(std::vector<Shadeop>& list) {
+    Shadeop& occlusion = addRays(
+        list, "occlusion",
         sigs({{"float occlusion(point p; vector r; pairs)"},
               {"float occlusion(point p; vector r; float samples; pairs)"},
               {"float occlusion(string map; point p; vector r; float samples; pairs)"},
@@ -210,8 +219,8 @@ std::vector<Shadeop> raytracingShadeops() {
             p.defaultText = "a quarter of samples",
             p.doc = "rays that are sent first where \"adaptive\" is above 0, or this is given without it";
         else if (p.name == "type" || p.name == "raytype") p.defaultText = "\"transmission\"";
-    Shadeop& indirect = add(
-        "indirectdiffuse",
+    Shadeop& indirect = addRays(
+        list, "indirectdiffuse",
         sigs({{"color indirectdiffuse(point p; vector r; pairs)"},
               {"color indirectdiffuse(point p; vector r; float samples; pairs)"},
               {"color indirectdiffuse(string map; point p; vector r; float samples; pairs)"},
@@ -231,8 +240,11 @@ std::vector<Shadeop> raytracingShadeops() {
                                                      "accepted and ignored: the result is exact for its rays");
     for (OptionalParameter& p : indirect.optional)
         if (p.name == "type" || p.name == "raytype") p.defaultText = "\"diffuse\"";
-    Shadeop& subsurface = add(
-        "subsurface",
+}
+
+void addSubsurface(std::vector<Shadeop>& list) {
+    Shadeop& subsurface = addRays(
+        list, "subsurface",
         sigs({{"color subsurface(point p; pairs)"},
               {"color subsurface(point p; normal n; pairs)"},
               {"color subsurface(string type; point p; normal n; pairs)"}}),
@@ -248,18 +260,22 @@ std::vector<Shadeop> raytracingShadeops() {
     for (OptionalParameter& p : subsurface.optional) p.doc = "accepted and ignored";
     subsurface.optional = subsurfaceParameters() + subsurface.optional;
     subsurface.contexts = kSurface | kLight; // classes that are both
-    Shadeop& photonmap = add("photonmap",
-                             sigs({{"color photonmap(string name; point p; vector n; pairs)"},
-                                   {"float photonmap(string name; point p; vector n; pairs)"}}),
-                             Lowering::Service,
-                             "Light from a photon map at p on the side of n: irradiance / PI, which is 1 where light of radiance "
-                             "1 arrives from everywhere, "
-                             "as of indirectdiffuse(); or radiance, what the surface there gives back of it as diffuse light. "
-                             "The power of the nearest photons "
-                             "is divided by the area of the disc that reaches to the one after them. Hider \"photon\" writes "
-                             "maps; where there is no file of "
-                             "the name and a light has attribute light:emitphotons 1, the map is made before the picture begins. "
-                             "The float form is the luminance.");
+}
+
+void addPhotonMaps(std::vector<Shadeop>& list) {
+    Shadeop& photonmap =
+        addRays(list, "photonmap",
+                sigs({{"color photonmap(string name; point p; vector n; pairs)"},
+                      {"float photonmap(string name; point p; vector n; pairs)"}}),
+                Lowering::Service,
+                "Light from a photon map at p on the side of n: irradiance / PI, which is 1 where light of radiance "
+                "1 arrives from everywhere, "
+                "as of indirectdiffuse(); or radiance, what the surface there gives back of it as diffuse light. "
+                "The power of the nearest photons "
+                "is divided by the area of the disc that reaches to the one after them. Hider \"photon\" writes "
+                "maps; where there is no file of "
+                "the name and a light has attribute light:emitphotons 1, the map is made before the picture begins. "
+                "The float form is the luminance.");
     list.back().examples = {{"photonmap(\"none.map\", P, N)", "0"}};
     photonmap.bias = Bias::Biased;
     photonmap.biasReason = "density estimate over a disc";
@@ -267,15 +283,19 @@ std::vector<Shadeop> raytracingShadeops() {
         {kF, "estimator", false, "50", "number of photons, 1 to 4096"},
         {kS, "lookuptype", false, "\"irradiance\"", "irradiance or radiance"},
         {kF, "mindepth", false, "0", "smallest number of bounces: 1 leaves out what comes from the lights themselves"}};
-    Shadeop& caustic =
-        add("caustic", sigs({{"color caustic(point p; vector n)"}, {"float caustic(point p; vector n)"}}), Lowering::Service,
-            "photonmap() of the map and the number of photons in the attributes photon:causticmap and photon:estimator of the "
-            "surface (in a light: of "
-            "the surface that it lights); 0 where it has no such map.");
+    Shadeop& caustic = addRays(
+        list, "caustic", sigs({{"color caustic(point p; vector n)"}, {"float caustic(point p; vector n)"}}), Lowering::Service,
+        "photonmap() of the map and the number of photons in the attributes photon:causticmap and photon:estimator of the "
+        "surface (in a light: of "
+        "the surface that it lights); 0 where it has no such map.");
     list.back().examples = {{"color caustic(P, N)", "0 0 0"}};
     caustic.bias = Bias::Biased;
     caustic.biasReason = "density estimate over a disc";
     caustic.optional.clear();
+}
+
+/// Directions drawn from maps, for lights that are written in RSL.
+void addSkySamples(std::vector<Shadeop>& list) {
     for (const auto& [name, rest, doc] :
          {std::array<const char*, 3>{"__skysample", "float a, b; output vector w; output color light",
                                      "Density per steradian of w, drawn in proportion to the light of an environment map, and "
@@ -283,13 +303,16 @@ std::vector<Shadeop> raytracingShadeops() {
           std::array<const char*, 3>{
               "__skydensity", "vector w; output color light",
               "Density with which __skysample() gives a direction of the map's space, and the light there."}}) {
-        Shadeop& sky =
-            add(name, sigs({{("float " + std::string(name) + "(string map; " + rest + ")").c_str()}}), Lowering::Service, doc);
+        Shadeop& sky = addRays(list, name, sigs({{("float " + std::string(name) + "(string map; " + rest + ")").c_str()}}),
+                               Lowering::Service, doc);
         sky.source = "Alpenglow";
         sky.optional.clear();
     }
-    Shadeop& gather = add(
-        "gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}),
+}
+
+void addGather(std::vector<Shadeop>& list) {
+    Shadeop& gather = addRays(
+        list, "gather", sigs({{"float gather(string category; point p; vector dir; float angle, float samples; pairs)"}}),
         Lowering::Request,
         "A statement of the language: gather(category, P, dir, angle, samples, pairs) body else other. Its body runs for "
         "each ray that hits "
@@ -317,6 +340,18 @@ std::vector<Shadeop> raytracingShadeops() {
         gather.optional +
         std::vector<OptionalParameter>{{kS, "distribution", false, "\"uniform\"", "of the rays in the cone: uniform or cosine"},
                                        {kC, "othreshold", false, "0", "surfaces are passed until their opacity adds up to this"}};
+}
+
+} // namespace
+
+std::vector<Shadeop> raytracingShadeops() {
+    std::vector<Shadeop> list;
+    addTrace(list);
+    addHemispheres(list);
+    addSubsurface(list);
+    addPhotonMaps(list);
+    addSkySamples(list);
+    addGather(list);
     return list;
 }
 

@@ -84,27 +84,29 @@ std::vector<Shadeop> withFootprints(std::vector<Shadeop> list) {
     return list;
 }
 
-} // namespace
+/// Adds a shadeop with the optional parameters of filters.
+Shadeop& addLookup(std::vector<Shadeop>& list, const char* name, std::vector<Signature> signatures, Lowering lowering,
+                   const char* doc) {
+    Shadeop op;
+    op.section = "Texture";
+    op.source = "3Delight manual, 6.4.6";
+    op.name = name;
+    op.signatures = std::move(signatures);
+    op.lowering = lowering;
+    op.derivative = DerivativeRule::ZeroWarn;
+    op.bias = Bias::Biased;
+    op.biasReason = "values are filtered over the footprint before they are used";
+    op.doc = doc;
+    op.optional = filterParameters();
+    list.push_back(std::move(op));
+    return list.back();
+}
 
-std::vector<Shadeop> textureShadeops() {
-    std::vector<Shadeop> list;
-    const auto add = [&](const char* name, std::vector<Signature> signatures, Lowering lowering, const char* doc) -> Shadeop& {
-        Shadeop op;
-        op.section = "Texture";
-        op.source = "3Delight manual, 6.4.6";
-        op.name = name;
-        op.signatures = std::move(signatures);
-        op.lowering = lowering;
-        op.derivative = DerivativeRule::ZeroWarn;
-        op.bias = Bias::Biased;
-        op.biasReason = "values are filtered over the footprint before they are used";
-        op.doc = doc;
-        op.optional = filterParameters();
-        list.push_back(std::move(op));
-        return list.back();
-    };
+/// Lookups in maps of colours.
+void addPictures(std::vector<Shadeop>& list) {
     const std::string quad = "float s1, float t1, float s2, float t2, float s3, float t3, float s4, float t4; pairs)";
-    add("texture",
+    addLookup(
+        list, "texture",
         each("float color", "$ texture(string name; pairs)") +
             each("float color", "$ texture(string name; float s, float t; pairs)") +
             each("float color", "$ texture(string name; " + quad),
@@ -118,7 +120,8 @@ std::vector<Shadeop> textureShadeops() {
         "corners. So bump maps tilt normals, smoothly across texels, and fade with distance.")
         .derivative = DerivativeRule::Gradient;
     list.back().examples = {{"color texture(\"wood.tex\", s, t)", "0.5 0.3 0.1", "", "the map has this colour everywhere"}};
-    add("environment",
+    addLookup(
+        list, "environment",
         each("float color", "$ environment(string name; vector v; pairs)") +
             each("float color", "$ environment(string name; vector v1, vector v2, vector v3, vector v4; pairs)"),
         Lowering::Service,
@@ -130,22 +133,23 @@ std::vector<Shadeop> textureShadeops() {
         .derivative = DerivativeRule::Gradient;
     list.back().optional = environmentParameters();
     list.back().examples = {{"color environment(\"sky.env\", N)", "0.5 0.7 1", "", "the map has this colour everywhere"}};
-    Shadeop& shadow =
-        add("shadow",
-            each("float color", "$ shadow(string name; point p; pairs)") +
-                each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
-            Lowering::Service,
-            "The part of p's surroundings, 0 to 1, that a depth map puts in shadow: its comparisons with the map, not its "
-            "depths, are filtered over the footprint of p, or over that "
-            "of four points. Of a deep map (Display \"deepshad\"), what its surfaces take of each colour; the float form is "
-            "their mean. 0 where the map does not look. In light shaders under path maps are not read: lights trace their "
-            "shadows there. \"raytrace\" sends the rays of transmission() from p to the light: "
-            "where L comes from, in a light's own shader or in illuminance(); far away in solar(). The float form of it is the "
-            "mean of the channels.");
+    Shadeop& shadow = addLookup(
+        list, "shadow",
+        each("float color", "$ shadow(string name; point p; pairs)") +
+            each("float color", "$ shadow(string name; point p1, point p2, point p3, point p4; pairs)"),
+        Lowering::Service,
+        "The part of p's surroundings, 0 to 1, that a depth map puts in shadow: its comparisons with the map, not its "
+        "depths, are filtered over the footprint of p, or over that "
+        "of four points. Of a deep map (Display \"deepshad\"), what its surfaces take of each colour; the float form is "
+        "their mean. 0 where the map does not look. In light shaders under path maps are not read: lights trace their "
+        "shadows there. \"raytrace\" sends the rays of transmission() from p to the light: "
+        "where L comes from, in a light's own shader or in illuminance(); far away in solar(). The float form of it is the "
+        "mean of the channels.");
     list.back().examples = {{"shadow(\"light.shd\", P)", "0"}};
     shadow.contexts = kSurface | kVolume | kLight;
     shadow.optional = shadowParameters();
-    add("ptexture",
+    addLookup(
+        list, "ptexture",
         each("float color", "$ ptexture(string name; uniform float channel; float face; pairs)") +
             each("float color", "$ ptexture(string name; uniform float channel; float face, float s, float t; pairs)") +
             each("float color", "$ ptexture(string name; uniform float channel; float face; " + quad),
@@ -160,29 +164,34 @@ std::vector<Shadeop> textureShadeops() {
     for (OptionalParameter& o : list.back().optional)
         if (o.name == "filter") o.doc = "gaussian, triangle, box or point";
     list.back().examples = {{"ptexture(\"none.ptx\", 0, 0)", "0"}};
-    Shadeop& bake = add("bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Service,
-                        "Writes (s, t, value) to a file, which maketx or MakeTexture turn into a texture. Readable text, one "
-                        "line a point: s, t and the numbers of value; binary when the name ends with \"&binary\", which is no "
-                        "part of the name. Before the frame is rendered, "
-                        "each primitive is shaded once at which a surface, displacement, light or Atmosphere shader bakes, at "
-                        "every corner of micropolygons of the size that ShadingRate says, seen or not, in their order; under "
-                        "path as often as a pixel has samples, and the mean is written. "
-                        "Curves, points and other primitives without a grid are baked where camera rays meet them, but not by "
-                        "lights. These bake for each point that asks for their light. docs/pointclouds.md has the format.");
+}
+
+/// What writes files.
+void addBaking(std::vector<Shadeop>& list) {
+    Shadeop& bake =
+        addLookup(list, "bake", each("float color point", "void bake(string file; float s, float t; $ value)"), Lowering::Service,
+                  "Writes (s, t, value) to a file, which maketx or MakeTexture turn into a texture. Readable text, one "
+                  "line a point: s, t and the numbers of value; binary when the name ends with \"&binary\", which is no "
+                  "part of the name. Before the frame is rendered, "
+                  "each primitive is shaded once at which a surface, displacement, light or Atmosphere shader bakes, at "
+                  "every corner of micropolygons of the size that ShadingRate says, seen or not, in their order; under "
+                  "path as often as a pixel has samples, and the mean is written. "
+                  "Curves, points and other primitives without a grid are baked where camera rays meet them, but not by "
+                  "lights. These bake for each point that asks for their light. docs/pointclouds.md has the format.");
     list.back().examples = {{"x", "7", "float x = 7; bake(\"none.bake\", s, t, x);"}};
     bake.pure = false;
     bake.optional.clear();
     bake.bias = Bias::Unbiased;
     bake.biasReason.clear();
     bake.contexts = kSurface | kDisplacement | kVolume | kLight;
-    Shadeop& bake3d =
-        add("bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Service,
-            "Writes p, n, a radius and values, given as pairs, to a point cloud: .ply where the name says so, else of "
-            "docs/pointclouds.md. 1 on success, 0 without a scene. The points are "
-            "those of bake(). Points, vectors, normals and matrices among the values go to the space of the file, too. \"_area\" "
-            "is the part of the surface that the point "
-            "stands for (missing: of its micropolygon), \"_radiosity\" the light that it sends. \"channels\" is not read. Calls "
-            "in imagers write nothing.");
+    Shadeop& bake3d = addLookup(
+        list, "bake3d", sigs({{"float bake3d(string file, string channels; point p; normal n; pairs)"}}), Lowering::Service,
+        "Writes p, n, a radius and values, given as pairs, to a point cloud: .ply where the name says so, else of "
+        "docs/pointclouds.md. 1 on success, 0 without a scene. The points are "
+        "those of bake(). Points, vectors, normals and matrices among the values go to the space of the file, too. \"_area\" "
+        "is the part of the surface that the point "
+        "stands for (missing: of its micropolygon), \"_radiosity\" the light that it sends. \"channels\" is not read. Calls "
+        "in imagers write nothing.");
     list.back().examples = {{"bake3d(\"light.ptc\", \"\", P, N, \"light\", Cs)", "0"}};
     bake3d.pure = false;
     bake3d.bias = Bias::Unbiased;
@@ -193,7 +202,11 @@ std::vector<Shadeop> textureShadeops() {
         {kF, "radius", false, "from the grid", "radius of the disk, or of the ball where n is 0; in the space of the file"},
         {kF, "radiusscale", false, "1", "multiplies the radius"},
         {kF, "interpolate", false, "0", "1 writes the middles of micropolygons instead of their corners"}};
-    add("texture3d", sigs({{"float texture3d(string file; point p; normal n; pairs)"}}), Lowering::Service,
+}
+
+void addTexture3d(std::vector<Shadeop>& list) {
+    addLookup(
+        list, "texture3d", sigs({{"float texture3d(string file; point p; normal n; pairs)"}}), Lowering::Service,
         "Reads values, named as output pairs, from a point cloud, brick map or volume (docs/maps.md): means of the points about "
         "p whose normals fit n (0: all do). 1 on success; 0 where "
         "there is nothing, and the variables stay as they are. What the file has no channel for is 0, and said once.")
@@ -204,6 +217,15 @@ std::vector<Shadeop> textureShadeops() {
         {kF, "maxdepth", false, "deepest",
          "the finest level that is read, 0 the coarsest: each halves the cells of the cube about the points"}};
     list.back().examples = {{"texture3d(\"none.ptc\", P, N, \"light\", x)", "0", "float x = 3;"}};
+}
+
+} // namespace
+
+std::vector<Shadeop> textureShadeops() {
+    std::vector<Shadeop> list;
+    addPictures(list);
+    addBaking(list);
+    addTexture3d(list);
     return withFootprints(std::move(list));
 }
 

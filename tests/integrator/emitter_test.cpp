@@ -17,7 +17,8 @@
 namespace emitter_test {
 
 using namespace alpenglow;
-using namespace alpenglow::integrator;
+using namespace alpenglow::bsdf;
+using namespace alpenglow::world;
 using namespace alpenglow::geometry::test;
 using teststat::samples, teststat::seedBase, teststat::kAlpha;
 
@@ -161,6 +162,42 @@ struct Cell {
     int hits = 0;
 };
 
+/// Solid angles of cells, each from n samples, as light is drawn and as rays count it. whole: what a ray that counts is worth.
+void expectSameCells(const std::vector<Cell>& drawn, const std::vector<Cell>& counted, int n, double whole,
+                     const std::string& what) {
+    // Welch's z of every cell with enough in it; the rest is one cell.
+    double sum = 0, total[2] = {}, variance = 0;
+    int used = 0;
+    Cell restA, restB;
+    auto compare = [&](const Cell& a, const Cell& b) {
+        double ma = a.s / n, mb = b.s / n, v = (a.q / n - ma * ma + b.q / n - mb * mb) / n;
+        double z = (ma - mb) / std::sqrt(v);
+        sum += z * z;
+        ++used;
+        EXPECT_GT(teststat::sidakP(teststat::normalP(z), 200), kAlpha) << what << ": a cell has " << ma << ", rays say " << mb;
+    };
+    for (size_t i = 0; i < drawn.size(); ++i) {
+        const Cell &a = drawn[i], &b = counted[i];
+        total[0] += a.s / n, total[1] += b.s / n;
+        variance += (a.q / n + b.q / n) / n;
+        if (a.hits >= 50 && b.hits >= 50) compare(a, b);
+        else
+            restA = {restA.s + a.s, restA.q + a.q, restA.hits + a.hits},
+            restB = {restB.s + b.s, restB.q + b.q, restB.hits + b.hits};
+    }
+    if (restA.hits >= 50 && restB.hits >= 50) compare(restA, restB);
+    else { // a handful of rays, or none: Poisson
+        double e = restA.s / whole;
+        EXPECT_LE(std::fabs(restB.hits - e), 10 + 5 * std::sqrt(e)) << what;
+    }
+    ASSERT_GE(used, 5) << what;
+    double p = teststat::gammaQ(used / 2.0, sum / 2);
+    EXPECT_GT(p, kAlpha) << what << ": chi^2 " << sum << " over " << used << " cells";
+    teststat::keepP("emitter " + what, p);
+    EXPECT_LE(std::fabs(total[0] - total[1]), teststat::kZ * std::sqrt(variance))
+        << what << ": " << total[0] << " sr, rays " << total[1];
+}
+
 class EmitterT1 : public ::testing::TestWithParam<int> {};
 
 TEST_P(EmitterT1, SolidAngleOfEveryCell) {
@@ -218,38 +255,7 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
             cell.s += whole * layers, cell.q += whole * layers * whole * layers, ++cell.hits;
         }
         EXPECT_EQ(blind, 0) << what << ": hits that the sampler cannot make"; // support
-        // Welch's z of every cell with enough in it; the rest is one cell.
-        double sum = 0, total[2] = {}, variance = 0;
-        int used = 0;
-        Cell restA, restB;
-        auto compare = [&](const Cell& a, const Cell& b) {
-            double ma = a.s / n, mb = b.s / n, v = (a.q / n - ma * ma + b.q / n - mb * mb) / n;
-            double z = (ma - mb) / std::sqrt(v);
-            sum += z * z;
-            ++used;
-            EXPECT_GT(teststat::sidakP(teststat::normalP(z), 200), kAlpha)
-                << what << ": a cell has " << ma << ", rays say " << mb;
-        };
-        for (size_t i = 0; i < drawn.size(); ++i) {
-            const Cell &a = drawn[i], &b = counted[i];
-            total[0] += a.s / n, total[1] += b.s / n;
-            variance += (a.q / n + b.q / n) / n;
-            if (a.hits >= 50 && b.hits >= 50) compare(a, b);
-            else
-                restA = {restA.s + a.s, restA.q + a.q, restA.hits + a.hits},
-                restB = {restB.s + b.s, restB.q + b.q, restB.hits + b.hits};
-        }
-        if (restA.hits >= 50 && restB.hits >= 50) compare(restA, restB);
-        else { // a handful of rays, or none: Poisson
-            double e = restA.s / whole;
-            EXPECT_LE(std::fabs(restB.hits - e), 10 + 5 * std::sqrt(e)) << what;
-        }
-        ASSERT_GE(used, 5) << what;
-        double p = teststat::gammaQ(used / 2.0, sum / 2);
-        EXPECT_GT(p, kAlpha) << what << ": chi^2 " << sum << " over " << used << " cells";
-        teststat::keepP("emitter " + what, p);
-        EXPECT_LE(std::fabs(total[0] - total[1]), teststat::kZ * std::sqrt(variance))
-            << what << ": " << total[0] << " sr, rays " << total[1];
+        expectSameCells(drawn, counted, n, whole, what);
     }
 }
 INSTANTIATE_TEST_SUITE_P(Primitives, EmitterT1, ::testing::Range(0, int(cases().size())));

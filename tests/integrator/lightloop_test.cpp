@@ -1,51 +1,11 @@
-// illuminance in all its forms, and lights by their handles. A large floor y = 0 seen at the origin; a point light of intensity I
+// illuminance in all its forms. A large floor y = 0 seen at the origin; a point light of intensity I
 // at height h straight above gives Cl = I / h^2 there, L = (0, h, 0). Under path the same, for nothing lies between.
 #include "base/limits.h"
-#include "integrator/floorscene.h"
+#include "integrator/lightloopscene.h"
 
 namespace lightloop_test {
 
-using namespace alpenglow;
-using namespace alpenglow::integrator;
-using namespace alpenglow::integrator::testing;
-
 namespace {
-
-std::string scene(const std::string& lights, const std::string& surface) {
-    return "WorldBegin\nSides 2\n" + lights + "AttributeBegin\nSurface " + surface + "\n" + kFloor + "AttributeEnd\nWorldEnd\n";
-}
-/// A surface with the body of a function that sets Ci.
-void surfaceOf(const std::string& name, const std::string& body, const std::string& parameters = "") {
-    writeShader(name, "surface " + name + "(" + parameters + ") {\n    Ci = 0; Oi = 1;\n" + body + "\n}\n");
-}
-/// Light of constant Cl = c, h above the origin, of categories.
-void writeLights() {
-    writeShader(
-        "flat",
-        R"(light flat(float c = 1; float h = 2; string __category = ""; float __nondiffuse = 0; float __nonspecular = 0;) {
-    illuminate(point "world" (0, h, 0)) Cl = c;
-}
-)");
-}
-std::string flat(int handle, float c, float h = 2, const std::string& more = "") {
-    return "LightSource \"flat\" " + std::to_string(handle) + " \"float c\" " + std::to_string(c) + " \"float h\" " +
-           std::to_string(h) + " " + more + "\n";
-}
-std::string category(const std::string& c) { return "\"string __category\" \"" + c + "\""; }
-
-/// The same value at every hider, waiting for rays or not.
-void expectEverywhere(const std::string& rib, Color want, const std::string& what) {
-    for (Hider h : {Hider::Hidden, Hider::Path})
-        for (bool suspend : {false, true}) {
-            Scene s(rib, under(h, suspend));
-            const Color c = s.one(kView);
-            for (int k = 0; k < 3; ++k)
-                EXPECT_NEAR(c[k], want[k], 1e-5 * std::max(1.f, want[k]))
-                    << what << ", hider " << int(h) << (suspend ? ", suspended" : "") << s.messages();
-            EXPECT_EQ(s.diagnostics.warnings(), 0) << what << s.messages();
-        }
-}
-
 TEST(Illuminance, Forms) {
     writeLights();
     const std::string lights = flat(1, 1, 2, category("a")) + flat(2, 4, 3, category("b")) + flat(3, 16, -2, category("a,b"));
@@ -306,26 +266,6 @@ TEST(Illuminance, OutputsAreReadWhereRaysMeetLights) {
     }
 }
 
-// handle->light() asks all samples of a light: what it gives is the light of the whole of it, with less noise.
-TEST(LightHandles, LightOfAllSamples) {
-    writeShader("halfdark", "light halfdark() { illuminate(P, N, PI / 2) Cl = xcomp(transform(\"world\", P)) > 0 ? 8 : 0; }\n");
-    surfaceOf("byhandle", R"(    shader all[] = getlights();
-    vector l = 0; color c = 0;
-    all[0]->light(l, c);
-    Ci = c * max(0, normalize(-l) . normal "world" (0, 1, 0));)");
-    auto with = [&](int n) {
-        const std::string disk =
-            "AttributeBegin\nAttribute \"light\" \"integer samples\" [" + std::to_string(n) +
-            "]\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"halfdark\" 7\nSurface \"constant\"\n"
-            "Color 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\nAttributeEnd\nIlluminate 7 1\n";
-        return Scene(scene(disk, "\"byhandle\""), under(Hider::Hidden)).estimate(kView, samples(6000));
-    };
-    const auto one = with(1), nine = with(9);
-    expectMean(one, 4 * .49 / 4.49, .03, "one sample");
-    expectMean(nine, 4 * .49 / 4.49, .015, "nine samples");
-    EXPECT_LT(nine.se(), one.se() * .5); // a third, but for the order of sequences
-}
-
 TEST(Illuminance, CoShadersLoopOverLights) {
     writeLights();
     writeShader("looplayer", R"(class looplayer(float gain = 1;) {
@@ -347,141 +287,6 @@ TEST(Illuminance, SamplesOfAnAreaLightAreTurns) {
     EXPECT_NEAR(s.one(kView).x, 6, 1e-5);
 }
 
-TEST(LightWeights, NonDiffuseAndNonSpecular) {
-    writeLights();
-    // The light shines along the normal, and so does the eye look: every lobe is 1 there.
-    const CameraRay straight = rayTo({0, .8f, 0}, {0, 0, 0});
-    const struct {
-        const char* body;
-        bool diffuse;
-    } cases[] = {{"Ci = diffuse(normalize(faceforward(N, I)));", true},
-                 {"Ci = specularstd(normalize(faceforward(N, I)), -normalize(I), .1);", false},
-                 {"Ci = phong(normalize(faceforward(N, I)), -normalize(I), 10);", false},
-                 {"Ci = specular(normalize(faceforward(N, I)), -normalize(I), .1);", false}};
-    for (const auto& c : cases)
-        for (float w : {0.f, .25f, 1.f}) {
-            surfaceOf("weighs", std::string("    ") + c.body);
-            const std::string weight =
-                std::string("\"float __non") + (c.diffuse ? "diffuse" : "specular") + "\" " + std::to_string(w);
-            const std::string other = std::string("\"float __non") + (c.diffuse ? "specular" : "diffuse") + "\" 1";
-            const double want = 8 * (1 - w);
-            Scene hidden(scene(flat(1, 8, 2, weight + " " + other), "\"weighs\""), under(Hider::Hidden));
-            EXPECT_NEAR(hidden.one(straight).x, want, 1e-4) << c.body << w;
-            Scene path(scene(flat(1, 8, 2, weight + " " + other), "\"weighs\""), under(Hider::Path));
-            EXPECT_NEAR(path.one(straight).x, want, 1e-4) << c.body << w;
-        }
-}
-
-// Emitters that a lobe's own ray meets are weighed like those that it samples: L R^2 / (R^2 + h^2) in all three ways.
-TEST(LightWeights, OfEmittersMetByRays) {
-    writeShader("weighedarea", "light weighedarea(float __nondiffuse = .75;) { illuminate(P, N, PI / 2) Cl = 5; }\n");
-    const std::string disk = "AttributeBegin\nAttribute \"light\" \"string units\" \"radiance\" AreaLightSource \"weighedarea\" "
-                             "7\nSurface \"constant\"\nColor 0 0 0\nTranslate 0 2 0\nRotate 90 1 0 0\nDisk 0 .7 360\n"
-                             "AttributeEnd\nIlluminate 7 1\n";
-    for (int mode : {0, 1, 2}) {
-        Settings set = under(Hider::Path);
-        set.bsdfOnly = mode == 1;
-        set.lightOnly = mode == 2;
-        Scene s(scene(disk, "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), set);
-        expectMean(s.estimate(kView, samples(mode == 1 ? 200000 : 20000)), .25 * 5 * .49 / 4.49, .02,
-                   "mode " + std::to_string(mode));
-    }
-    writeShader("weighedsky", "light weighedsky(float __nondiffuse = .75;) { solar() Cl = 4; }\n");
-    Scene sky(scene("LightSource \"weighedsky\" 1\n", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"), under(Hider::Path));
-    expectMean(sky.estimate(kView, samples(2000)), 1, .02, "sky");
-}
-
-// solar(axis, angle): one direction without an angle; under path, directions of the cone. L of a sky is where its light goes.
-TEST(Solar, ConeOfDirections) {
-    writeShader("sun", "light sun(float angle = 0;) { solar(vector \"world\" (0, -1, 0), angle) Cl = 2; }\n");
-    surfaceOf("meancosine", "    illuminance(P) Ci += Cl * (normalize(L) . normalize(vector \"world\" (0, 1, 0)));");
-    const double half = .6; // the mean cosine over a cone is (1 + cos a) / 2
-    Scene sharp(scene("LightSource \"sun\" 1\n", "\"meancosine\""), under(Hider::Path));
-    EXPECT_NEAR(sharp.one(kView).x, 2, 1e-5);
-    Scene hidden(scene("LightSource \"sun\" 1 \"float angle\" .6\n", "\"meancosine\""), under(Hider::Hidden));
-    EXPECT_NEAR(hidden.one(kView).x, 2, 1e-5);
-    for (const char* look : {"\"meancosine\"", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"})
-        for (const char* count : {"", "Attribute \"light\" \"integer samples\" [3]\n"}) {
-            Scene soft(scene(count + std::string("LightSource \"sun\" 1 \"float angle\" .6\n"), look), under(Hider::Path));
-            expectMean(soft.estimate(kView, samples(4000)), 1 + std::cos(half), .01, look);
-        }
-    // A half plane that hides half of the cone takes half of its light.
-    const std::string wall = "AttributeBegin\nSurface \"constant\"\nColor 0 0 0\nPolygon \"P\" [0 .5 -90  90 .5 -90  90 .5 90  0 "
-                             ".5 90]\nAttributeEnd\n";
-    Scene shaded(scene("LightSource \"sun\" 1 \"float angle\" .6\n" + wall, "\"matte\" \"float Ka\" 0 \"float Kd\" 1"),
-                 under(Hider::Path));
-    expectMean(shaded.estimate(rayTo({-.3f, .2f, -.4f}, {0, 0, 0}), samples(20000)), (1 + std::cos(half)) / 2, .02, "half");
-}
-TEST(Solar, TheSkyKnowsItsDirection) {
-    writeShader(
-        "upsky",
-        "light upsky() { solar() { vector d = normalize(vtransform(\"world\", L)); Cl = -ycomp(d); } }\n"); // cosine above
-    surfaceOf("skyloop", "    illuminance(P, normal \"world\" (0, 1, 0), PI / 2) Ci += Cl * (normalize(L) . normalize(vector "
-                         "\"world\" (0, 1, 0)));");
-    // Mean of cos^2 over the hemisphere by 1 / pi: 2 pi / 3 / pi.
-    for (const char* look : {"\"skyloop\"", "\"matte\" \"float Ka\" 0 \"float Kd\" 1"}) {
-        Scene s(scene("LightSource \"upsky\" 1\n", look), under(Hider::Path));
-        expectMean(s.estimate(kView, samples(20000)), 2 / 3.0, .01, look);
-    }
-}
-
-// Without rays a sky is one light that faces the surface: diffuse() gets from it what an even sky gives, from either side.
-TEST(Solar, WithoutRaysTheSkyFacesTheSurface) {
-    writeShader("evensky", "light evensky() { solar() Cl = color(2, .5, .25); }\n");
-    surfaceOf(
-        "onelight",
-        "    illuminance(P, faceforward(normalize(N), I), PI / 2) Ci += Cl * (normalize(L) . faceforward(normalize(N), I));");
-    surfaceOf("anylight",
-              "    shader all[] = getlights(); illuminance(P) Ci += Cl * arraylength(all) * abs(normalize(L) . normalize(N));");
-    for (const char* look : {"\"matte\" \"float Ka\" 0 \"float Kd\" 1", "\"onelight\"", "\"anylight\""})
-        for (const char* attribute : {"", "Attribute \"light\" \"integer samples\" [4]\n"}) {
-            Scene s(scene(attribute + std::string("LightSource \"evensky\" 1\n"), look), under(Hider::Hidden));
-            const Color c = s.one(kView);
-            EXPECT_NEAR(c.x, 2, 1e-5) << look;
-            EXPECT_NEAR(c.y, .5, 1e-5) << look;
-            EXPECT_NEAR(c.z, .25, 1e-5) << look;
-        }
-}
-
-TEST(LightHandles, LoopsByHand) {
-    writeLights();
-    const std::string lights = flat(1, 1, 2, category("a")) + flat(2, 4, 3, category("b")) + flat(3, 16, 5, category("a,b"));
-    const struct {
-        const char* body;
-        float want;
-    } cases[] = {{"shader l[] = getlights(); Ci = arraylength(l);", 3},
-                 {"shader l[] = getlights(\"category\", \"a\"); Ci = arraylength(l);", 2},
-                 {"shader l[] = getlights(\"category\", \"a&-b\"); Ci = arraylength(l);", 1},
-                 {"shader l[] = getlights(\"category\", \"none\"); Ci = arraylength(l);", 0},
-                 {"vector D; color C; shader l[] = getlights(); float i; for (i = 0; i < arraylength(l); i += 1) { "
-                  "l[i]->light(D, C); Ci += C; }",
-                  21},
-                 {"vector D; color C; shader l[] = getlights(\"category\", \"a\"); uniform float n = arraylength(l), i; for (i = "
-                  "0; i < n; i += 1) "
-                  "{ l[i]->light(D, C); Ci += C * (vector \"world\" (0, 1, 0) . normalize(-D)); }",
-                  17},
-                 {"vector D; color C; getlight(\"2\")->light(D, C); Ci = length(D);", 3},
-                 {"vector D = 7; color C = 5; shader s = getlight(\"9\"); s->light(D, C); Ci = C;", 5},
-                 {"shader s = getlight(\"3\"); Ci = s->h;", 5},
-                 {"float v = 0; shader s = getlight(\"2\"); Ci = 10 * getvar(s, \"c\", v); Ci += v;", 14},
-                 {"float v = 3; shader s = getlight(\"2\"); Ci = 10 * getvar(s, \"nothing\", v); Ci += v;", 3},
-                 {"illuminance(P) Ci += islightcategory(\"a\") * Cl;", 17},
-                 {"illuminance(P) Ci += islightcategory(\"a&b\") * Cl;", 16}};
-    for (const auto& c : cases) {
-        surfaceOf("byhand", std::string("    ") + c.body);
-        expectEverywhere(scene(lights, "\"byhand\""), Color(c.want), c.body);
-    }
-}
-// The limit of handles: the rest is left out, and said.
-TEST(LightHandles, NoMoreThanTheLimit) {
-    writeLights();
-    std::string lights;
-    for (int i = 0; i < limits::kLightHandles + 3; ++i) lights += flat(i + 1, 1);
-    surfaceOf("many", "    shader l[] = getlights(); Ci = arraylength(l);");
-    Scene s(scene(lights, "\"many\""), under(Hider::Hidden));
-    EXPECT_NEAR(s.one(kView).x, limits::kLightHandles, 1e-4);
-    EXPECT_NE(s.messages().find("getlights() returns at most"), std::string::npos) << s.messages();
-}
 // More light samples than are kept for the next loop: those that are not kept are taken anew, and the sum is the same.
 TEST(Illuminance, MoreLightsThanAreKept) {
     writeLights();
@@ -523,17 +328,6 @@ TEST(Illuminance, PairsThatMeanNothingAreSaid) {
         EXPECT_NEAR(s.one(kView).x, 1, 1e-5) << c.body;
         EXPECT_NE(s.messages().find(c.said), std::string::npos) << c.body << s.messages();
     }
-}
-
-// Under path the light that a handle gives has its shadow.
-TEST(LightHandles, CastShadows) {
-    writeLights();
-    surfaceOf("shadowed", "    vector D; color C; shader l[] = getlights(); float i; for (i = 0; i < arraylength(l); i += 1) { "
-                          "l[i]->light(D, C); Ci += C; }");
-    const std::string roof =
-        "AttributeBegin\nSurface \"constant\"\nPolygon \"P\" [-1 1 -1  1 1 -1  1 1 1  -1 1 1]\nAttributeEnd\n";
-    Scene s(scene(flat(1, 1) + flat(2, 4, .5f) + roof, "\"shadowed\""), under(Hider::Path));
-    EXPECT_NEAR(s.one(kView).x, 4, 1e-5);
 }
 
 } // namespace

@@ -33,6 +33,44 @@ inline bool litBy(const float* L, const float* axis, float angle) {
     return cosine > std::cos(double(angle));
 }
 
+/// What a kernel of the test calls.
+struct PointCalls {
+    const CompiledKernel* kernel;
+    Diagnostics* diagnostics;
+    std::vector<std::vector<float>> cones; ///< of the loops that run, outermost first
+
+    /// rsl::ServiceFn
+    static void service(KernelCall* c, int32_t site, int32_t, uint64_t mask, int32_t lanes, const float* a, float* r) {
+        const auto& x = *static_cast<PointCalls*>(c->user);
+        if (site < 0) return;
+        const ir::Site& s = x.kernel->sites()[size_t(site)];
+        if (basicService(s, mask, lanes, a, r, *x.diagnostics, [](int, const std::string&) {})) return;
+        if (s.op.ends_with("transform")) { // every space is "current": names come first, then the value
+            int row = 0;
+            for (const ir::Kind k : s.argKinds) row += k == ir::Kind::String;
+            std::copy_n(a + row * lanes, ir::components(s.resultKinds[0]) * lanes, r);
+        }
+    }
+    /// rows: P, axis, angle
+    static int32_t lightBegin(KernelCall* c, int32_t, int32_t, uint64_t, int32_t lanes, const float* rows) {
+        static_cast<PointCalls*>(c->user)->cones.emplace_back(rows, rows + 7 * lanes);
+        return 2;
+    }
+    /// L, Cl, Ol of a light
+    static uint64_t lightFetch(KernelCall* c, int32_t, int32_t light, int32_t, uint64_t mask, int32_t lanes, float* out) {
+        const std::vector<float>& cone = static_cast<PointCalls*>(c->user)->cones.back();
+        uint64_t lit = 0;
+        for (int l = 0; l < lanes; l++) {
+            for (int r = 0; r < 9; r++) out[r * lanes + l] = kTestLights[light][r];
+            const auto row = [&](int r) { return cone[size_t(r * lanes + l)]; };
+            const float axis[3] = {row(3), row(4), row(5)};
+            if (litBy(kTestLights[light], axis, row(6))) lit |= uint64_t(1) << l;
+        }
+        return lit & mask;
+    }
+    static void lightEnd(KernelCall* c, int32_t, int32_t, int32_t) { static_cast<PointCalls*>(c->user)->cones.pop_back(); }
+};
+
 /// out[output][component * n + point]. Uniform inputs of build S take the value of point 0. Spaces are identities; parameters
 /// come from `defaults`. False when the kernel suspends. Services other than those of strings leave zeros.
 inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointValue& value,
@@ -75,45 +113,18 @@ inline bool runPoints(const CompiledKernel& k, bool mixed, int n, const PointVal
     }
     std::vector<float*> results;
     for (const auto& o : k.outputs()) results.push_back(make(size_t(ir::components(o.kind))));
-    struct Context {
-        const CompiledKernel* kernel;
-        Diagnostics* diagnostics;
-        std::vector<std::vector<float>> cones; ///< of the loops that run, outermost first
-    } context{&k, &diagnostics, {}};
+    PointCalls calls{&k, &diagnostics, {}};
     KernelCall call{};
     call.in = in.data();
     call.out = results.data();
     call.n = n;
     call.stride = int32_t(stride);
     call.strings = k.strings().data();
-    call.user = &context;
-    call.service = [](KernelCall* c, int32_t site, int32_t, uint64_t mask, int32_t lanes, const float* a, float* r) {
-        const auto& x = *static_cast<Context*>(c->user);
-        if (site < 0) return;
-        const ir::Site& s = x.kernel->sites()[size_t(site)];
-        if (basicService(s, mask, lanes, a, r, *x.diagnostics, [](int, const std::string&) {})) return;
-        if (s.op.ends_with("transform")) { // every space is "current": names come first, then the value
-            int row = 0;
-            for (const ir::Kind k : s.argKinds) row += k == ir::Kind::String;
-            std::copy_n(a + row * lanes, ir::components(s.resultKinds[0]) * lanes, r);
-        }
-    };
-    call.lightBegin = [](KernelCall* c, int32_t, int32_t, uint64_t, int32_t lanes, const float* rows) { // P, axis, angle
-        static_cast<Context*>(c->user)->cones.emplace_back(rows, rows + 7 * lanes);
-        return int32_t(2);
-    };
-    call.lightFetch = [](KernelCall* c, int32_t, int32_t light, int32_t, uint64_t mask, int32_t lanes, float* out) {
-        const std::vector<float>& cone = static_cast<Context*>(c->user)->cones.back();
-        uint64_t lit = 0;
-        for (int l = 0; l < lanes; l++) {
-            for (int r = 0; r < 9; r++) out[r * lanes + l] = kTestLights[light][r];
-            const auto row = [&](int r) { return cone[size_t(r * lanes + l)]; };
-            const float axis[3] = {row(3), row(4), row(5)};
-            if (litBy(kTestLights[light], axis, row(6))) lit |= uint64_t(1) << l;
-        }
-        return lit & mask;
-    };
-    call.lightEnd = [](KernelCall* c, int32_t, int32_t, int32_t) { static_cast<Context*>(c->user)->cones.pop_back(); };
+    call.user = &calls;
+    call.service = PointCalls::service;
+    call.lightBegin = PointCalls::lightBegin;
+    call.lightFetch = PointCalls::lightFetch;
+    call.lightEnd = PointCalls::lightEnd;
     k.run(&call);
     out.clear();
     for (size_t o = 0; o < results.size(); o++) {

@@ -218,8 +218,9 @@ Definition transformBy(Base rule) {
     };
 }
 
-const std::map<std::string, Definition>& definitions() {
-    static const std::map<std::string, Definition> all = {
+/// Of numbers, or of tuples component by component.
+std::map<std::string, Definition> ofNumbers() {
+    return {
         {"radians", each([](float x) { return x * (kPi / 180); })},
         {"degrees", each([](float x) { return x * (180 / kPi); })},
         {"sqrt", each(root)},
@@ -238,6 +239,12 @@ const std::map<std::string, Definition>& definitions() {
         {"step", each([](float edge, float x) { return x < edge ? 0.0f : 1.0f; })},
         {"smoothstep", each(smooth)},
         {"mix", each(blend)},
+    };
+}
+
+/// Of tuples, and of parts of them.
+std::map<std::string, Definition> ofTuples() {
+    return {
         {"xcomp", componentOf(0)},
         {"ycomp", componentOf(1)},
         {"zcomp", componentOf(2)},
@@ -273,6 +280,11 @@ const std::map<std::string, Definition>& definitions() {
              return tuple({std::fma(n[0], k, i[0]), std::fma(n[1], k, i[1]), std::fma(n[2], k, i[2])});
          }},
         {"refract", [](Arguments& a) { return tuple(refracted(three(a[0]), three(a[1]), a[2].n[0])); }},
+    };
+}
+
+std::map<std::string, Definition> ofMatricesAndSpaces() {
+    return {
         {"translate",
          [](Arguments& a) {
              Walked r = a[0];
@@ -293,6 +305,11 @@ const std::map<std::string, Definition>& definitions() {
         {"vtransform", transformBy(Base::Vector)},
         {"ntransform", transformBy(Base::Normal)},
         {"ctransform", colourSpace},
+    };
+}
+
+std::map<std::string, Definition> ofTextsAndSplines() {
+    return {
         {"spline", spline},
         {"format", format},
         {"concat",
@@ -304,6 +321,14 @@ const std::map<std::string, Definition>& definitions() {
         {"match",
          [](Arguments& a) { return real(std::regex_search(a[1].s, std::regex(a[0].s, std::regex::extended)) ? 1.0f : 0.0f); }},
     };
+}
+
+const std::map<std::string, Definition>& definitions() {
+    static const std::map<std::string, Definition> all = [] {
+        std::map<std::string, Definition> sum = ofNumbers();
+        for (auto more : {ofTuples(), ofMatricesAndSpaces(), ofTextsAndSplines()}) sum.merge(more);
+        return sum;
+    }();
     return all;
 }
 

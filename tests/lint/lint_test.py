@@ -52,9 +52,9 @@ class Exceptions(unittest.TestCase):
         lint.ROOT = pathlib.Path(folder.name)
         (lint.ROOT / "scripts").mkdir()
 
-    def messages(self, lines, listed, update=False):
+    def messages(self, lines, listed, update=False, reason=" # a table"):
         if listed is not None:
-            (lint.ROOT / lint.EXCEPTIONS).write_text(f"function {listed} a.cpp f\n" if listed else "")
+            (lint.ROOT / lint.EXCEPTIONS).write_text(f"function {listed} a.cpp f{reason}\n" if listed else "")
         return lint.check_lengths({"a.cpp": "void f() {\n" + "\n" * (lines - 2) + "}\n"}, update)
 
     def test_limits(self):
@@ -74,6 +74,19 @@ class Exceptions(unittest.TestCase):
         self.assertIn("grew", self.messages(95, None, update=True)[0])
         self.assertEqual(self.messages(70, None, update=True), [])
         self.assertIn("of 81 lines", self.messages(81, None)[0])
+
+    def test_entries_have_reasons(self):
+        self.assertEqual(len(self.messages(90, 90, reason="")), 1)
+        self.assertIn("has no reason", self.messages(90, 90, reason="")[0])
+        self.assertIn("has no reason", self.messages(90, 90, reason=" # ")[0])
+
+    def test_update_keeps_reasons(self):
+        self.messages(89, 90, update=True)
+        self.assertEqual((lint.ROOT / lint.EXCEPTIONS).read_text(), lint.HEADER + "function 89 a.cpp f # a table\n")
+
+    def test_numbers_of_functions_are_no_reasons(self):
+        self.assertEqual(lint.parse_exceptions("function 90 a.cpp f#2\nfunction 91 a.cpp TEST(A,B) # one # two\n"),
+                         {("function", "a.cpp", "f#2"): (90, ""), ("function", "a.cpp", "TEST(A,B)"): (91, "one # two")})
 
 
 if __name__ == "__main__":

@@ -189,18 +189,21 @@ TEST(Caustics, HalfOfAMirror) {
     }
 }
 
-// An area light: paths find its image in the mirror too. With photons these are left out, and the sum stays.
-TEST(Caustics, TogetherAsPathsAlone) {
-    struct Case {
-        std::string name, scene;
-        CameraRay ray;
-        double precision;
-        float width = 0;
-    };
+namespace {
+
+/// A scene with light that photons bring, a place to look at, and how well both estimates agree there.
+struct CausticScene {
+    std::string name, scene;
+    CameraRay ray;
+    double precision;
+    float width = 0;
+};
+
+std::vector<CausticScene> causticScenes() {
     const std::string floor = kMatte + "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n";
     const std::string mirror = kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2]\n",
                       ceiling = kMatte + "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n";
-    const Case cases[] = {
+    return {
         {"mirror",
          lamp(1, .5, 5) + "AttributeBegin " + kMirror + "Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" + kMatte +
              "Polygon \"P\" [-2 2 -2  -2 2 2  2 2 2  2 2 -2]\n",
@@ -259,12 +262,18 @@ TEST(Caustics, TogetherAsPathsAlone) {
              "AttributeBegin " +
              "Atmosphere \"beer\" \"k\" .5 " + mirror + "AttributeEnd " + ceiling,
          rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), .06}};
+}
+
+} // namespace
+
+// An area light: paths find its image in the mirror too. With photons these are left out, and the sum stays.
+TEST(Caustics, TogetherAsPathsAlone) {
     writeShader("beer", "volume beer(float k = 1) { Ci *= exp(-k * length(I)); }\n");
     writeShader("waxen", "surface waxen() { Oi = 1; Ci = subsurface(P, N, \"reflectance\", color(.8, .6, .4), \"meanfreepath\", "
                          ".01, \"ior\", 1); }\n");
     writeShader("lift", "displacement lift() { P += vector \"world\" (0, .9, 0); }\n");
     writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
-    for (const Case& c : cases) {
+    for (const CausticScene& c : causticScenes()) {
         Scene s(inWorld(c.scene), path());
         const Moments plain = s.estimate(c.ray, samples(40000));
         const uint32_t count = nightly() ? 100 : 40;

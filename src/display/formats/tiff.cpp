@@ -333,21 +333,9 @@ void setCompression(TIFF* f, const std::string& name, unsigned bits) {
         TIFFSetField(f, TIFFTAG_PREDICTOR, bits == 32 ? PREDICTOR_FLOATINGPOINT : PREDICTOR_HORIZONTAL);
 }
 
-} // namespace
-
-static bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics&, std::string& why) {
-    Messages messages;
-    auto options = openOptions(messages);
-    unsigned bits = o.sample == Sample::UInt8 ? 8 : o.sample == Sample::UInt16 ? 16 : 32;
-    size_t n = m.channels.size(), rowBytes = n * size_t(m.width) * bits / 8;
-    bool big = rowBytes * size_t(m.height) > (size_t(3) << 30);
-    TiffHandle t(TIFFClientOpenExt(out.path().c_str(), big ? "w8" : "w", &out, fileRead, fileWrite, fileSeek, noClose, fileSize,
-                                   nullptr, nullptr, options.get()));
-    if (!t) {
-        why = messages.first;
-        return false;
-    }
-    TIFF* f = t.get();
+/// How the samples are stored.
+void setForm(TIFF* f, const Image& m, const WriteOptions& o, unsigned bits) {
+    const size_t n = m.channels.size(), rowBytes = n * size_t(m.width) * bits / 8;
     bool rgb = beginWithATriple(m.channels);
     TIFFSetField(f, TIFFTAG_IMAGEWIDTH, uint32_t(m.width));
     TIFFSetField(f, TIFFTAG_IMAGELENGTH, uint32_t(m.height));
@@ -363,6 +351,11 @@ static bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, D
     if (!extra.empty()) TIFFSetField(f, TIFFTAG_EXTRASAMPLES, int(extra.size()), extra.data());
     setCompression(f, o.compression, bits);
     TIFFSetField(f, TIFFTAG_ROWSPERSTRIP, uint32_t(std::max<size_t>(1, (size_t(64) << 10) / std::max<size_t>(1, rowBytes))));
+}
+
+/// What is known of the picture besides: channels, texts, its place in a larger one, the camera.
+void setMetadata(TIFF* f, const Image& m) {
+    const size_t n = m.channels.size();
     auto text = [&](const char* key) {
         auto i = m.metadata.find(key);
         return i == m.metadata.end() ? "" : i->second.c_str();
@@ -394,8 +387,12 @@ static bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, D
     if (m.worldToNDC) screen = *m.worldToNDC * inverse(screenToNDC());
     matrix(TIFFTAG_PIXAR_MATRIX_WORLDTOSCREEN, screen);
     matrix(TIFFTAG_PIXAR_MATRIX_WORLDTOCAMERA, m.worldToCamera);
+}
 
-    std::vector<uint8_t> row(rowBytes);
+/// False after an error, which the library has told.
+bool writeRows(TIFF* f, const Image& m, const WriteOptions& o, unsigned bits) {
+    const size_t n = m.channels.size();
+    std::vector<uint8_t> row(n * size_t(m.width) * bits / 8);
     bool ok = true;
     for (int y = 0; y < m.height && ok; ++y) {
         const float* from = m.pixel(0, y);
@@ -408,6 +405,27 @@ static bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, D
         }
         ok = TIFFWriteScanline(f, row.data(), uint32_t(y), 0) >= 0;
     }
+    return ok;
+}
+
+} // namespace
+
+static bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, Diagnostics&, std::string& why) {
+    Messages messages;
+    auto options = openOptions(messages);
+    unsigned bits = o.sample == Sample::UInt8 ? 8 : o.sample == Sample::UInt16 ? 16 : 32;
+    size_t n = m.channels.size(), rowBytes = n * size_t(m.width) * bits / 8;
+    bool big = rowBytes * size_t(m.height) > (size_t(3) << 30);
+    TiffHandle t(TIFFClientOpenExt(out.path().c_str(), big ? "w8" : "w", &out, fileRead, fileWrite, fileSeek, noClose, fileSize,
+                                   nullptr, nullptr, options.get()));
+    if (!t) {
+        why = messages.first;
+        return false;
+    }
+    TIFF* f = t.get();
+    setForm(f, m, o, bits);
+    setMetadata(f, m);
+    bool ok = writeRows(f, m, o, bits);
     ok = ok && TIFFWriteDirectory(f);
     t.reset();
     if (!ok || !messages.first.empty()) {

@@ -201,9 +201,7 @@ void approximation(Interpreter& in, const Call& c) {
     in.attributes().values["GeometricApproximation:" + p.name] = std::move(p);
 }
 
-} // namespace
-
-std::vector<Request> attributeRequests() {
+std::vector<Request> appearanceRequests() {
     const Kind k = Kind::Attribute;
     const unsigned s = kAttributes;
     return {
@@ -235,6 +233,13 @@ std::vector<Request> attributeRequests() {
          }},
         {"Matte", "int on", k, s, false, "The object hides what is behind it and is itself not seen.", "1",
          [](Interpreter& in, const Call& c) { in.attributes().matte = c.integer(0) != 0; }},
+    };
+}
+
+std::vector<Request> shapeRequests() {
+    const Kind k = Kind::Attribute;
+    const unsigned s = kAttributes;
+    return {
         {"Bound", "number[6] bound", k, s, true,
          "Object-space box around what follows. Without effect: shapes know their bounds.", "[-1 1 -1 1 -1 1]",
          [](Interpreter& in, const Call& c) {
@@ -286,6 +291,14 @@ std::vector<Request> attributeRequests() {
         {"Attribute", "string class; ..", k, s, false, "Attributes of this renderer, by class and name (docs/options.md).",
          "\"identifier\" \"name\" \"ball\"", attribute},
     };
+}
+
+} // namespace
+
+std::vector<Request> attributeRequests() {
+    std::vector<Request> all = appearanceRequests();
+    for (Request& r : shapeRequests()) all.push_back(std::move(r));
+    return all;
 }
 
 } // namespace alpenglow::ri

@@ -223,9 +223,7 @@ void option(Interpreter& in, const Call& c) {
     }
 }
 
-} // namespace
-
-std::vector<Request> optionRequests() {
+std::vector<Request> cameraRequests() {
     const Kind k = Kind::Option;
     return {
         {"Format", "int xres; int yres; number pixelaspect", k, kOptions, false,
@@ -272,6 +270,12 @@ std::vector<Request> optionRequests() {
              in.options.pixelSamplesY = std::max(c.real(1), 1.f);
              in.options.pixelSamplesSet = true;
          }},
+    };
+}
+
+std::vector<Request> pictureRequests() {
+    const Kind k = Kind::Option;
+    return {
         {"PixelFilter", "string name; number xwidth; number ywidth", k, kOptions, false,
          "Reconstruction filter and its full widths in pixels.", "\"gaussian\" 2 2", pixelFilter},
         {"Exposure", "number gain; number gamma", k, kOptions, false, "Output = (gain * value) ^ (1 / gamma).", "1 2.2",
@@ -307,6 +311,14 @@ std::vector<Request> optionRequests() {
         {"Camera", "string name; string handle?; ..", k, kOptions, false, "Names a further camera; not used.", "\"side\"",
          [](Interpreter& in, const Call& c) { in.incapable(c, "named cameras are not used"); }},
     };
+}
+
+} // namespace
+
+std::vector<Request> optionRequests() {
+    std::vector<Request> all = cameraRequests();
+    for (Request& r : pictureRequests()) all.push_back(std::move(r));
+    return all;
 }
 
 } // namespace alpenglow::ri

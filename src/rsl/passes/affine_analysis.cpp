@@ -144,7 +144,11 @@ struct Analysis {
         default:
             break;
         }
-        if (!m) return;
+        if (m) use(i, m);
+    }
+
+    /// An instruction without regions takes what depends on these sites.
+    void use(const Inst* i, const SiteSet& m) {
         switch (i->op) {
         case Op::Add:
         case Op::Sub:

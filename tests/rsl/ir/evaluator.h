@@ -106,37 +106,27 @@ private:
         return static_cast<size_t>(x >= 0 ? (x < n ? x : n - 1) : 0);
     }
 
-    void inst(const Inst* i) {
-        if (++steps > 200000) throw std::runtime_error("too many steps");
+    void input(const Inst* i) {
+        const Input& in = k_.inputs[static_cast<size_t>(i->index)];
+        std::vector<float>& v = inputs[in.name];
+        const int count = components(in.kind) * std::max(1, in.array);
+        for (int c = static_cast<int>(v.size()); c < count; ++c)
+            v.push_back(unit(mix(hashText(in.name), static_cast<uint64_t>(c))));
+        if (i->op == Op::Input) {
+            set(i, v);
+            return;
+        }
+        arrays_.push_back(std::make_unique<std::vector<std::vector<float>>>());
+        const size_t w = static_cast<size_t>(components(in.kind));
+        for (size_t e = 0; e < static_cast<size_t>(in.array); ++e)
+            arrays_.back()->emplace_back(v.begin() + static_cast<long>(e * w), v.begin() + static_cast<long>((e + 1) * w));
+        values_[i] = {Value{{}, {}, arrays_.back().get()}};
+    }
+
+    /// Numbers, tuples and matrices.
+    void arithmetic(const Inst* i) {
         const auto arg = [&](size_t a) -> const Value& { return get(i->args[a]); };
         switch (i->op) {
-        case Op::Const:
-            set(i, i->numbers);
-            break;
-        case Op::ConstString:
-            values_[i] = {Value{{}, i->text, nullptr}};
-            break;
-        case Op::Input:
-        case Op::ArrayInput: {
-            const Input& in = k_.inputs[static_cast<size_t>(i->index)];
-            std::vector<float>& v = inputs[in.name];
-            const int count = components(in.kind) * std::max(1, in.array);
-            for (int c = static_cast<int>(v.size()); c < count; ++c)
-                v.push_back(unit(mix(hashText(in.name), static_cast<uint64_t>(c))));
-            if (i->op == Op::Input) {
-                set(i, v);
-                break;
-            }
-            arrays_.push_back(std::make_unique<std::vector<std::vector<float>>>());
-            const size_t w = static_cast<size_t>(components(in.kind));
-            for (size_t e = 0; e < static_cast<size_t>(in.array); ++e)
-                arrays_.back()->emplace_back(v.begin() + static_cast<long>(e * w), v.begin() + static_cast<long>((e + 1) * w));
-            values_[i] = {Value{{}, {}, arrays_.back().get()}};
-            break;
-        }
-        case Op::RegionParam:
-        case Op::Result:
-            break;
         case Op::Add:
             each(i, [](float a, float b) { return a + b; });
             break;
@@ -169,6 +159,15 @@ private:
         case Op::Extract:
             set(i, {arg(0).n.at(static_cast<size_t>(i->index))});
             break;
+        default:
+            break;
+        }
+    }
+
+    /// Comparisons and truth values.
+    void truth(const Inst* i) {
+        const auto arg = [&](size_t a) -> const Value& { return get(i->args[a]); };
+        switch (i->op) {
         case Op::Less:
             set(i, {f(i->args[0]) < f(i->args[1]) ? 1.0f : 0.0f});
             break;
@@ -193,32 +192,34 @@ private:
         case Op::ToFloat:
             set(i, {f(i->args[0])});
             break;
-        case Op::Select:
-            values_[i] = {f(i->args[0]) != 0 ? arg(1) : arg(2)};
-            break;
-        case Op::Runtime: {
-            std::vector<float> in;
-            for (const Inst* a : i->args) in.insert(in.end(), get(a).n.begin(), get(a).n.end());
-            const std::vector<Kind> kinds = i->results.empty() ? std::vector<Kind>{i->kind} : i->results;
-            int total = 0;
-            for (Kind kd : kinds) total += components(kd);
-            std::vector<float> out(static_cast<size_t>(total));
-            if (!evaluateRuntime(i->text, in.data(), static_cast<int>(in.size()), out.data(), total))
-                throw std::runtime_error("no runtime " + i->text);
-            std::vector<Value> results;
-            size_t at = 0;
-            for (Kind kd : kinds) {
-                const size_t n = static_cast<size_t>(components(kd));
-                results.push_back({{out.begin() + static_cast<long>(at), out.begin() + static_cast<long>(at + n)}, {}, nullptr});
-                at += n;
-            }
-            values_[i] = results;
+        default:
             break;
         }
-        case Op::Service:
-        case Op::Request:
-            values_[i] = fake(i, 0);
-            break;
+    }
+
+    void runtime(const Inst* i) {
+        std::vector<float> in;
+        for (const Inst* a : i->args) in.insert(in.end(), get(a).n.begin(), get(a).n.end());
+        const std::vector<Kind> kinds = i->results.empty() ? std::vector<Kind>{i->kind} : i->results;
+        int total = 0;
+        for (Kind kd : kinds) total += components(kd);
+        std::vector<float> out(static_cast<size_t>(total));
+        if (!evaluateRuntime(i->text, in.data(), static_cast<int>(in.size()), out.data(), total))
+            throw std::runtime_error("no runtime " + i->text);
+        std::vector<Value> results;
+        size_t at = 0;
+        for (Kind kd : kinds) {
+            const size_t n = static_cast<size_t>(components(kd));
+            results.push_back({{out.begin() + static_cast<long>(at), out.begin() + static_cast<long>(at + n)}, {}, nullptr});
+            at += n;
+        }
+        values_[i] = results;
+    }
+
+    /// What is sent to lights and rays, and arrays.
+    void memory(const Inst* i) {
+        const auto arg = [&](size_t a) -> const Value& { return get(i->args[a]); };
+        switch (i->op) {
         case Op::Emit: {
             Pair p;
             std::copy_n(arg(0).n.begin(), 3, p.weight);
@@ -244,44 +245,113 @@ private:
         case Op::ArrayStore:
             (*arg(0).array)[element(i)] = arg(2).n;
             break;
+        default:
+            break;
+        }
+    }
+
+    void loop(const Inst* i) {
+        std::vector<Value> v;
+        for (const Inst* a : i->args) v.push_back(get(a));
+        for (;;) {
+            for (const Region& r : i->regions)
+                for (size_t p = 0; p < v.size(); ++p) values_[r.params[p]] = {v[p]};
+            region(i->regions[0]);
+            if (f(i->regions[0].yields[0]) == 0) break;
+            region(i->regions[1]);
+            v = yields(i->regions[1]);
+        }
+        values_[i] = v;
+    }
+
+    void lightLoop(const Inst* i) {
+        std::vector<Value> v;
+        for (size_t a = 3; a < i->args.size(); ++a) v.push_back(get(i->args[a]));
+        const Region& r = i->regions[0];
+        for (int light = 0; light < 3; ++light) {
+            for (size_t p = 0; p < 3; ++p) {
+                std::vector<float> t;
+                for (uint64_t c = 0; c < 3; ++c) t.push_back(unit(mix(mix(static_cast<uint64_t>(light), p), c)));
+                set(r.params[p], t);
+            }
+            set(r.params[3], {static_cast<float>(light)});
+            for (size_t p = 0; p < v.size(); ++p) values_[r.params[4 + p]] = {v[p]};
+            region(r);
+            v = yields(r);
+        }
+        values_[i] = v;
+    }
+
+    void inst(const Inst* i) {
+        if (++steps > 200000) throw std::runtime_error("too many steps");
+        const auto arg = [&](size_t a) -> const Value& { return get(i->args[a]); };
+        switch (i->op) {
+        case Op::Const:
+            set(i, i->numbers);
+            break;
+        case Op::ConstString:
+            values_[i] = {Value{{}, i->text, nullptr}};
+            break;
+        case Op::Input:
+        case Op::ArrayInput:
+            input(i);
+            break;
+        case Op::RegionParam:
+        case Op::Result:
+            break;
+        case Op::Add:
+        case Op::Sub:
+        case Op::Mul:
+        case Op::Div:
+        case Op::Neg:
+        case Op::Du:
+        case Op::Dv:
+        case Op::Splat:
+        case Op::Triple:
+        case Op::MatrixOf:
+        case Op::Extract:
+            arithmetic(i);
+            break;
+        case Op::Less:
+        case Op::LessEqual:
+        case Op::Equal:
+        case Op::NotEqual:
+        case Op::And:
+        case Op::Or:
+        case Op::Not:
+        case Op::ToFloat:
+            truth(i);
+            break;
+        case Op::Select:
+            values_[i] = {f(i->args[0]) != 0 ? arg(1) : arg(2)};
+            break;
+        case Op::Runtime:
+            runtime(i);
+            break;
+        case Op::Service:
+        case Op::Request:
+            values_[i] = fake(i, 0);
+            break;
+        case Op::Emit:
+        case Op::Mark:
+        case Op::Rescale:
+        case Op::ArrayNew:
+        case Op::ArrayLoad:
+        case Op::ArrayStore:
+            memory(i);
+            break;
         case Op::If: {
             const Region& r = i->regions[f(i->args[0]) != 0 ? 0 : 1];
             region(r);
             values_[i] = yields(r);
             break;
         }
-        case Op::Loop: {
-            std::vector<Value> v;
-            for (const Inst* a : i->args) v.push_back(get(a));
-            for (;;) {
-                for (const Region& r : i->regions)
-                    for (size_t p = 0; p < v.size(); ++p) values_[r.params[p]] = {v[p]};
-                region(i->regions[0]);
-                if (f(i->regions[0].yields[0]) == 0) break;
-                region(i->regions[1]);
-                v = yields(i->regions[1]);
-            }
-            values_[i] = v;
+        case Op::Loop:
+            loop(i);
             break;
-        }
-        case Op::LightLoop: {
-            std::vector<Value> v;
-            for (size_t a = 3; a < i->args.size(); ++a) v.push_back(get(i->args[a]));
-            const Region& r = i->regions[0];
-            for (int light = 0; light < 3; ++light) {
-                for (size_t p = 0; p < 3; ++p) {
-                    std::vector<float> t;
-                    for (uint64_t c = 0; c < 3; ++c) t.push_back(unit(mix(mix(static_cast<uint64_t>(light), p), c)));
-                    set(r.params[p], t);
-                }
-                set(r.params[3], {static_cast<float>(light)});
-                for (size_t p = 0; p < v.size(); ++p) values_[r.params[4 + p]] = {v[p]};
-                region(r);
-                v = yields(r);
-            }
-            values_[i] = v;
+        case Op::LightLoop:
+            lightLoop(i);
             break;
-        }
         case Op::Function: // this evaluator runs kernels whose functions are inlined
         case Op::Call:
             throw std::runtime_error("an outlined function");

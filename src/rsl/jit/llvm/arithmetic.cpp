@@ -135,6 +135,42 @@ Jet Emitter::derive(Jet x, bool v) {
     return r;
 }
 
+/// Comparisons, and what is made of truth values.
+Val Emitter::logic(const Inst* i) {
+    auto arg = [&](size_t k) -> Value* { return value(i->args[k])[0].v; };
+    auto compare = [&](llvm::CmpInst::Predicate f, llvm::CmpInst::Predicate s) -> Val {
+        Value *a = arg(0), *b = arg(1);
+        match(a, b);
+        return {{a->getType()->isFPOrFPVectorTy() ? b_.CreateFCmp(f, a, b) : b_.CreateICmp(s, a, b)}};
+    };
+    using P = llvm::CmpInst;
+    switch (i->op) {
+    case Op::Less:
+        return compare(P::FCMP_OLT, P::ICMP_SLT);
+    case Op::LessEqual:
+        return compare(P::FCMP_OLE, P::ICMP_SLE);
+    case Op::Equal:
+        return compare(P::FCMP_OEQ, P::ICMP_EQ);
+    case Op::NotEqual:
+        return compare(P::FCMP_UNE, P::ICMP_NE);
+    case Op::Not:
+        return {{b_.CreateNot(arg(0))}};
+    case Op::ToFloat: {
+        Value *c = arg(0), *one = number(1), *nought = number(0);
+        if (c->getType()->isVectorTy()) {
+            one = lanes(one);
+            nought = lanes(nought);
+        }
+        return {{b_.CreateSelect(c, one, nought)}};
+    }
+    default: { // And, Or
+        Value *a = arg(0), *b = arg(1);
+        match(a, b);
+        return {{i->op == Op::And ? b_.CreateAnd(a, b) : b_.CreateOr(a, b)}};
+    }
+    }
+}
+
 void Emitter::arithmetic(const Inst* i) {
     auto arg = [&](size_t k) -> const Val& { return value(i->args[k]); };
     Val r;
@@ -143,12 +179,6 @@ void Emitter::arithmetic(const Inst* i) {
         if (a.size() != b.size()) fail(std::string("operands of different kinds: ") + ir::name(i->op));
         for (size_t c = 0; c < a.size(); c++) r.push_back(f(a[c], b[c]));
     };
-    auto compare = [&](llvm::CmpInst::Predicate f, llvm::CmpInst::Predicate s) {
-        Value *a = arg(0)[0].v, *b = arg(1)[0].v;
-        match(a, b);
-        r.push_back({a->getType()->isFPOrFPVectorTy() ? b_.CreateFCmp(f, a, b) : b_.CreateICmp(s, a, b)});
-    };
-    using P = llvm::CmpInst;
     switch (i->op) {
     case Op::Add:
         each([&](Jet a, Jet b) { return add(a, b); });
@@ -177,40 +207,18 @@ void Emitter::arithmetic(const Inst* i) {
         r.push_back(arg(0)[size_t(i->index)]);
         break;
     case Op::Less:
-        compare(P::FCMP_OLT, P::ICMP_SLT);
-        break;
     case Op::LessEqual:
-        compare(P::FCMP_OLE, P::ICMP_SLE);
-        break;
     case Op::Equal:
-        compare(P::FCMP_OEQ, P::ICMP_EQ);
-        break;
     case Op::NotEqual:
-        compare(P::FCMP_UNE, P::ICMP_NE);
-        break;
     case Op::And:
-    case Op::Or: {
-        Value *a = arg(0)[0].v, *b = arg(1)[0].v;
-        match(a, b);
-        r.push_back({i->op == Op::And ? b_.CreateAnd(a, b) : b_.CreateOr(a, b)});
-        break;
-    }
+    case Op::Or:
     case Op::Not:
-        r.push_back({b_.CreateNot(arg(0)[0].v)});
+    case Op::ToFloat:
+        r = logic(i);
         break;
     case Op::Select: {
         const Val &c = arg(0), &a = arg(1), &b = arg(2);
         for (size_t k = 0; k < a.size(); k++) r.push_back(select(c[0].v, a[k], b[k]));
-        break;
-    }
-    case Op::ToFloat: {
-        Value* c = arg(0)[0].v;
-        Value *one = number(1), *nought = number(0);
-        if (c->getType()->isVectorTy()) {
-            one = lanes(one);
-            nought = lanes(nought);
-        }
-        r.push_back({b_.CreateSelect(c, one, nought)});
         break;
     }
     case Op::Du:

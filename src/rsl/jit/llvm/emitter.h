@@ -67,6 +67,7 @@ private:
     // functions.cpp
     void call(const ir::Inst*);
     Made function(const ir::Inst*, const std::vector<std::vector<Slot>>& arguments);
+    void leaves(const ir::Region&);
     Slot slot(const Jet&) const;
     llvm::Type* slotType(ir::Kind, bool varying);
     void passTypes(ir::Kind, const Slot&, std::vector<llvm::Type*>&);
@@ -105,6 +106,7 @@ private:
     Val selectLanes(llvm::Value* mask, const Val& a, const Val& b);
     // arithmetic.cpp
     void arithmetic(const ir::Inst*);
+    Val logic(const ir::Inst*);
     Jet add(Jet, Jet), sub(Jet, Jet), mul(Jet, Jet), div(Jet, Jet, const ir::Inst* divisor), neg(Jet);
     Jet select(llvm::Value* c, Jet a, Jet b);
     Jet derive(Jet, bool v);

@@ -58,6 +58,23 @@ Jet Emitter::receive(Kind k, const Slot& s, const std::function<Value*()>& next)
     return j;
 }
 
+/// Constants and inputs that a body uses: written before everything else.
+void Emitter::leaves(const ir::Region& body) {
+    std::unordered_set<const Inst*> seen;
+    const auto leaf = [&](const Inst* i) {
+        const bool is = i->op == Op::Const || i->op == Op::ConstString || i->op == Op::Input || i->op == Op::ArrayInput;
+        if (is && seen.insert(i).second) inst(i);
+    };
+    const std::function<void(const ir::Region&)> within = [&](const ir::Region& r) {
+        for (const Inst* i : r.body) {
+            for (const Inst* a : i->args) leaf(a);
+            for (const ir::Region& sub : i->regions) within(sub);
+        }
+        for (const Inst* y : r.yields) leaf(y);
+    };
+    within(body);
+}
+
 Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slot>>& arguments) {
     std::string key = std::to_string(f->id);
     std::vector<Shape> shapes;
@@ -98,20 +115,7 @@ Emitter::Made Emitter::function(const Inst* f, const std::vector<std::vector<Slo
         for (const Slot& s : arguments[a]) v.push_back(e.receive(body.params[a]->kind, s, next));
         e.define(body.params[a], 0, std::move(v));
     }
-    // Leaves that the body uses, before everything else.
-    std::unordered_set<const Inst*> seen;
-    const auto leaf = [&](const Inst* i) {
-        const bool is = i->op == Op::Const || i->op == Op::ConstString || i->op == Op::Input || i->op == Op::ArrayInput;
-        if (is && seen.insert(i).second) e.inst(i);
-    };
-    const std::function<void(const ir::Region&)> leaves = [&](const ir::Region& r) {
-        for (const Inst* i : r.body) {
-            for (const Inst* a : i->args) leaf(a);
-            for (const ir::Region& sub : i->regions) leaves(sub);
-        }
-        for (const Inst* y : r.yields) leaf(y);
-    };
-    leaves(body);
+    e.leaves(body);
     e.region(body);
     Made made;
     std::vector<llvm::Type*> resultTypes;

@@ -137,6 +137,49 @@ bool Shapes::loop(const Inst* i, bool varyingControl) {
     return changed;
 }
 
+bool Shapes::input(const Inst* i) {
+    const ir::Input& in = kernel_.inputs[i->index];
+    const bool jets = !in.uniform && i->op == Op::Input && (in.kind == Kind::Float || in.kind == Kind::Triple);
+    // u and v are what derivatives are taken by: (1, 0) and (0, 1), the second ones zero. Their footprints are given numbers.
+    uint8_t parts = jets ? partsOfOrder(in.order) : uint8_t(0);
+    if (in.name == "u") parts &= kDu;
+    else if (in.name == "v") parts &= kDv;
+    else if (in.name == "du" || in.name == "dv") parts = 0;
+    return join(i, 0, {!in.uniform || mixed_, parts});
+}
+
+bool Shapes::everyResult(const Inst* i, Shape s) {
+    bool changed = false;
+    for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, s);
+    return changed;
+}
+
+bool Shapes::call(const Inst* i) {
+    std::vector<Shape> arguments;
+    for (size_t a = 1; a < i->args.size(); a++) {
+        Shape x = of(i->args[a]);
+        x.parts &= partsOfOrder(i->args[0]->regions[0].params[a - 1]->order);
+        arguments.push_back(x);
+    }
+    const Shapes& body = function(i->args[0], arguments);
+    bool changed = false;
+    for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, body.of(i->args[0]->regions[0].yields[size_t(k)]));
+    return changed;
+}
+
+bool Shapes::branch(const Inst* i, bool varyingControl) {
+    const bool varying = of(i->args[0]).varying;
+    bool changed = false;
+    for (const auto& r : i->regions) changed |= region(r, varyingControl || varying);
+    for (int k = 0; k < int(i->regions[0].yields.size()); k++) {
+        Shape y{varying, 0};
+        y.join(of(i->regions[0].yields[k]));
+        if (i->regions.size() > 1 && k < int(i->regions[1].yields.size())) y.join(of(i->regions[1].yields[k]));
+        changed |= join(i, k, y);
+    }
+    return changed;
+}
+
 bool Shapes::inst(const Inst* i, bool varyingControl) {
     Shape s;
     auto arg = [&](int k) { return of(i->args[k]); };
@@ -147,16 +190,8 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
     case Op::RegionParam:
         return false;
     case Op::Input:
-    case Op::ArrayInput: {
-        const ir::Input& in = kernel_.inputs[i->index];
-        const bool jets = !in.uniform && i->op == Op::Input && (in.kind == Kind::Float || in.kind == Kind::Triple);
-        // u and v are what derivatives are taken by: (1, 0) and (0, 1), the second ones zero. Their footprints are given numbers.
-        uint8_t parts = jets ? partsOfOrder(in.order) : uint8_t(0);
-        if (in.name == "u") parts &= kDu;
-        else if (in.name == "v") parts &= kDv;
-        else if (in.name == "du" || in.name == "dv") parts = 0;
-        return join(i, 0, {!in.uniform || mixed_, parts});
-    }
+    case Op::ArrayInput:
+        return input(i);
     case Op::Result:
         return join(i, 0, of(i->args[0], i->index));
     case Op::Mul:
@@ -178,33 +213,16 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
     case Op::ToFloat:
         s.parts = 0;
         return join(i, 0, s);
-    case Op::Runtime: {
-        s.parts = partsOfOrder(callOrder(i));
-        bool changed = false;
-        for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, s);
-        return changed;
-    }
+    case Op::Runtime:
+        return everyResult(i, {s.varying, partsOfOrder(callOrder(i))});
     case Op::Function:
         return false;
-    case Op::Call: {
-        std::vector<Shape> arguments;
-        for (size_t a = 1; a < i->args.size(); a++) {
-            Shape x = of(i->args[a]);
-            x.parts &= partsOfOrder(i->args[0]->regions[0].params[a - 1]->order);
-            arguments.push_back(x);
-        }
-        const Shapes& body = function(i->args[0], arguments);
-        bool changed = false;
-        for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, body.of(i->args[0]->regions[0].yields[size_t(k)]));
-        return changed;
-    }
+    case Op::Call:
+        return call(i);
     case Op::Service:
     case Op::Request:
-    case Op::Mark: {
-        bool changed = false;
-        for (int k = 0; k < resultCount(i); k++) changed |= join(i, k, {true, 0});
-        return changed;
-    }
+    case Op::Mark:
+        return everyResult(i, {true, 0});
     case Op::Du: {
         const uint8_t p = arg(0).parts;
         s.parts = uint8_t(((p & kDuu) ? kDu : 0) | ((p & kDuv) ? kDv : 0));
@@ -226,18 +244,8 @@ bool Shapes::inst(const Inst* i, bool varyingControl) {
         auto& slot = slots(i->args[0]);
         return slot[0].join(v); // the array keeps every part that is stored
     }
-    case Op::If: {
-        const bool varying = arg(0).varying;
-        bool changed = false;
-        for (const auto& r : i->regions) changed |= region(r, varyingControl || varying);
-        for (int k = 0; k < int(i->regions[0].yields.size()); k++) {
-            Shape y{varying, 0};
-            y.join(of(i->regions[0].yields[k]));
-            if (i->regions.size() > 1 && k < int(i->regions[1].yields.size())) y.join(of(i->regions[1].yields[k]));
-            changed |= join(i, k, y);
-        }
-        return changed;
-    }
+    case Op::If:
+        return branch(i, varyingControl);
     case Op::Loop:
     case Op::LightLoop:
         return loop(i, varyingControl);

@@ -48,7 +48,12 @@ private:
     Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative, Cache* cacheOfAll);
     void collect(const ir::Region&);
     bool region(const ir::Region&, bool varyingControl);
+    /// These change the shapes of results; true if any became larger.
     bool inst(const ir::Inst*, bool varyingControl);
+    bool input(const ir::Inst*);
+    bool everyResult(const ir::Inst*, Shape);
+    bool call(const ir::Inst*);
+    bool branch(const ir::Inst*, bool varyingControl);
     bool loop(const ir::Inst*, bool varyingControl);
     bool join(const ir::Inst*, int index, Shape);
     std::vector<Shape>& slots(const ir::Inst*);

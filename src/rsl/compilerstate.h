@@ -1,0 +1,43 @@
+// What a ShaderCompiler holds. Not for other files than those of the compiler.
+#pragma once
+#include "rsl/compiler.h"
+#include "rsl/jit/cache.h"
+#include "rsl/plugins.h"
+#include <atomic>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+
+namespace alpenglow::rsl {
+
+struct ShaderCompiler::State {
+    Settings settings;
+    std::unique_ptr<jit::KernelCache> cache;
+    std::atomic<bool> cacheRefused = false; ///< which was reported
+    mutable std::mutex mutex;
+    std::map<std::string, std::shared_future<std::shared_ptr<const CompiledShader>>> shaders;
+    std::map<std::string, std::shared_future<std::shared_ptr<const CompiledKernel>>> kernels;
+    CompilerStatistics statistics;
+    PluginLibrary plugins;
+    std::function<void*(const std::string&)> outside = [this](const std::string& name) { return plugins.address(name); };
+
+    FrontOptions front() {
+        FrontOptions o;
+        o.defines = settings.defines;
+        o.dialect = settings.dialect;
+        o.rispecSpecular = settings.rispecSpecular;
+        o.lint = settings.lint;
+        if (settings.allowExec)
+            o.plugin = [this](const std::string& name, const std::string& beside, std::string& why, std::string& hint) {
+                std::vector<std::string> folders{beside};
+                folders.insert(folders.end(), settings.pluginPaths.begin(), settings.pluginPaths.end());
+                return plugins.load(name, folders, why, hint);
+            };
+        return o;
+    }
+};
+
+} // namespace alpenglow::rsl

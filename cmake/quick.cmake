@@ -38,11 +38,12 @@ function(group_sources target prefix bytes sources)
   endforeach()
 endfunction()
 
-# quick(target [PCH_FROM other | PCH header...] [HEAVY regex]): groups for the sources of `target`, and its precompiled headers.
+# quick(target [PCH_FROM other | PCH header...] [HEAVY regex] [ONE_GROUP]): groups for the sources of `target`, and its precompiled
+# headers. ONE_GROUP: where what they include costs more than they do.
 # HEAVY: files with a line that matches come into groups of their own, because what they include costs more than they do.
 # A source with the property COMPILE_OPTIONS is compiled alone and without them; one with COMPILE_DEFINITIONS or ALPENGLOW_ALONE alone.
 function(quick target)
-  cmake_parse_arguments(Q "" "PCH_FROM;HEAVY" "PCH" ${ARGN})
+  cmake_parse_arguments(Q "ONE_GROUP" "PCH_FROM;HEAVY" "PCH" ${ARGN})
   get_target_property(sources ${target} SOURCES)
   set(light_sources)
   set(heavy_sources)
@@ -75,7 +76,11 @@ function(quick target)
   endforeach()
   if(ALPENGLOW_UNITY)
     math(EXPR more "${ALPENGLOW_GROUP_BYTES} * 3 / 2")
-    group_sources(${target} "" ${ALPENGLOW_GROUP_BYTES} "${light_sources}")
+    set(bytes ${ALPENGLOW_GROUP_BYTES})
+    if(Q_ONE_GROUP)
+      set(bytes 10000000)
+    endif()
+    group_sources(${target} "" ${bytes} "${light_sources}")
     group_sources(${target} heavy_ ${more} "${heavy_sources}")
     set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_MODE GROUP)
   endif()

@@ -16,7 +16,8 @@ if(TARGET test_texture AND TARGET alpenglow_grids)
   add_executable(make_test_grid EXCLUDE_FROM_ALL ${CMAKE_SOURCE_DIR}/tests/texture/make_grid.cpp)
   target_link_libraries(make_test_grid PRIVATE ${OPENVDB_LIBRARY} TBB::tbb Imath::Imath)
   target_include_directories(make_test_grid SYSTEM PRIVATE ${OPENVDB_HEADERS})
-  target_compile_options(make_test_grid PRIVATE -Wno-enum-constexpr-conversion -fno-sanitize=alignment) # as alpenglow_grids
+  # As alpenglow_grids. It writes a few small grids: what costs is its compilation, 17.9 s optimised and 6.8 s so.
+  target_compile_options(make_test_grid PRIVATE -Wno-enum-constexpr-conversion -fno-sanitize=alignment -O0)
   add_dependencies(test_texture make_test_grid)
   target_compile_definitions(test_texture PRIVATE ALPENGLOW_MAKE_GRID="$<TARGET_FILE:make_test_grid>")
 endif()

@@ -245,7 +245,7 @@ struct World {
 } // namespace
 
 TEST(Leaks, NoRayLeavesAClosedForm) {
-    const int n = teststat::samples(4'000, 12'000); // of 15 forms in 6 ways: a million
+    const int n = teststat::samples(2'000, 12'000); // of 15 forms in 6 ways: a million
     for (const Form& form : kForms)
         for (const How how : {Still, Goes, Deforms, Both, Instance, Instances}) {
             const World w(form, how);

@@ -1,5 +1,6 @@
 // Blobbies against closed forms: the ball, the capsule, fields by quadrature and by differences, volumes and areas by chords and
 // samples.
+#include "../nightly.h"
 #include "base/limits.h"
 #include "geometry/blob_field.h"
 #include "make.h"
@@ -277,7 +278,7 @@ TEST(Blobby, NoThinPartIsLost) {
     ASSERT_TRUE(s);
     BlobField field;
     ASSERT_TRUE(field.read(301, p->ints2, p->numbers, {}, Matrix(), {}, diag));
-    for (int i = 0; i < 20; ++i) {
+    for (int i = 0; i < (nightly() ? 20 : 8); ++i) {
         const Vec3d o(4 * random01() - 0.5, 4 * random01() - 0.5, -1), to(4 * random01() - 0.5, 4 * random01() - 0.5, 4);
         const auto t = hits(*s, o, to - o);
         size_t seen = 0;

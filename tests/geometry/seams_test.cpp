@@ -287,7 +287,7 @@ TEST(Seams, NoRayLeavesThroughThem) {
         for (const ShapeRef& shape : s.shapes)
             for (uint32_t i = 0; i < shape->mesh().vertices; ++i) seam.push_back(shape->mesh().P[i]);
         size_t lost = 0;
-        for (int k = 0; k < (nightly() ? 90000 : 4000); ++k, ++rays) {
+        for (int k = 0; k < (nightly() ? 90000 : 2000); ++k, ++rays) {
             accel::Ray r;
             r.org = Vec3(inside + Vec3d(uniform() - 0.5, uniform() - 0.5, uniform() - 0.5) * 0.1);
             // At vertices, between two that may be neighbours, and anywhere.

@@ -27,9 +27,10 @@ Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth =
     s.lanes = lanes;
     Scene scene(rib, s);
     std::vector<CameraRay> rays;
-    for (int i = 0; i < 900; ++i) {
-        CameraRay r = rayTo({0, 0, 0}, {float(i % 30) / 30 - .48f, float(i / 30) / 30 - .48f, 1});
-        r.px = i % 30, r.py = i / 30, r.sample = uint32_t(i % 5), r.spread = .001f;
+    const int side = nightly() ? 30 : 20;
+    for (int i = 0; i < side * side; ++i) {
+        CameraRay r = rayTo({0, 0, 0}, {float(i % side) / float(side) - .48f, float(i / side) / float(side) - .48f, 1});
+        r.px = i % side, r.py = i / side, r.sample = uint32_t(i % 5), r.spread = .001f;
         rays.push_back(r);
     }
     Traced t;
@@ -194,9 +195,12 @@ TEST(Blocks, FollowWhatKernelsWaitFor) {
     }
     Ci = .2 * Cs * c;
 })");
-    for (const char* shader : {"\"threshold\"", "\"threshold\" \"samples\" 3", "\"twice\"", "\"around\""})
-        for (const std::string& more : {std::string(), std::string("Opacity .5 .6 .7\n"), manyLights(6)})
+    size_t turn = 0; // not nightly: every two of shader, scene and depth have their turn
+    for (const char* shader : {"\"threshold\"", "\"threshold\" \"samples\" 3", "\"twice\"", "\"around\""}) {
+        for (const std::string& more : {std::string(), std::string("Opacity .5 .6 .7\n"), manyLights(6)}) {
+            size_t of = turn++;
             for (const int depth : {0, 2, 9}) {
+                if (!chosen(of++, 3)) continue;
                 const std::string rib = roomOf(shader, more);
                 const Traced one = trace(rib, false, 16, depth), all = trace(rib, true, 16, depth);
                 EXPECT_GT(sumOf(one), 1) << shader;
@@ -207,6 +211,9 @@ TEST(Blocks, FollowWhatKernelsWaitFor) {
                 EXPECT_EQ(differences(one, trace(rib, true, 4, depth)), 0u) << shader << more << depth;
                 EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
             }
+        }
+        ++turn;
+    }
 }
 
 TEST(Blocks, LetLightThroughAndLeaveWhatNeedsALook) {
@@ -247,14 +254,16 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
     ASSERT_EQ(d.all().size(), 0u);
     outputs.outputs = {{"soft"}, {"sheen"}};
     writeShader("bumpy", R"(displacement bumpy() { P += .03 * sin(20 * u) * normalize(N); N = calculatenormal(P); })");
-    const std::string bumpy = "Attribute \"displacementbound\" \"float sphere\" .1\nDisplacement \"bumpy\"\n";
+    const std::string bumpy = "ShadingRate 16\nAttribute \"displacementbound\" \"float sphere\" .1\nDisplacement \"bumpy\"\n";
     const std::string inside = "Interior \"medium\" \"color scattering\" [0 0 0] \"color absorption\" [.2 .5 .3]\n";
     const std::string fog = "Atmosphere \"fog\" \"distance\" 9 \"background\" [.3 .2 .1]\n";
-    for (const Settings& s : {pathSettings(), local, first, paths, outputs})
+    size_t turn = 0; // not nightly: every setting and scene, and each of both with both shaders
+    for (const Settings& s : {pathSettings(), local, first, paths, outputs}) {
         for (const std::string& more :
-             {std::string(), fog, fog + "Opacity .5 .6 .7\n", inside + "Opacity .5 .6 .7\n", bumpy, manyLights(6)})
+             {std::string(), fog, fog + "Opacity .5 .6 .7\n", inside + "Opacity .5 .6 .7\n", bumpy, manyLights(6)}) {
+            size_t of = turn++;
             for (const char* shader : {"\"apart\"", "\"facets\""}) {
-                if (more == bumpy && !s.lightPaths) continue; // to dice the room takes seconds
+                if (!chosen(of++, 2) || (more == bumpy && !s.lightPaths)) continue; // to dice the room takes long
                 const std::string rib = roomOf(shader, more);
                 const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);
                 EXPECT_GT(sumOf(one), 1) << shader << more;
@@ -262,6 +271,9 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
                 EXPECT_EQ(differences(one, trace(rib, true, 4, -1, s)), 0u) << shader << more;
                 EXPECT_GT(all.inBlocks, s.outputs.empty() ? all.points / 4 : 0) << shader << more;
             }
+        }
+        ++turn; // the number of scenes is even
+    }
 }
 
 TEST(Blocks, AreFollowedThroughFog) {
@@ -284,11 +296,17 @@ TEST(Blocks, AreFollowedThroughFog) {
     ASSERT_EQ(d.all().size(), 0u);
     local.localRoulette = true;
     byDistance.mediumSampling = MediumSampling::Distance;
-    for (const Settings& s : {pathSettings(), paths, local, byDistance})
+    size_t i = 0; // not nightly: every two of settings, scene, shader and depth have their turn
+    for (const Settings& s : {pathSettings(), paths, local, byDistance}) {
+        size_t j = 0;
         for (const std::string& more :
-             {fog(""), fog("") + milk + "Opacity .5 .6 .7\n", biased + fog(""), fog("") + manyLights(6)})
-            for (const char* shader : {"\"matte\"", "\"plastic\""})
+             {fog(""), fog("") + milk + "Opacity .5 .6 .7\n", biased + fog(""), fog("") + manyLights(6)}) {
+            size_t k = 0;
+            for (const char* shader : {"\"matte\"", "\"plastic\""}) {
+                const bool turn = chosen(i + j + k++, 2);
+                size_t l = 0;
                 for (const int depth : {1, -1}) {
+                    if (!turn || !chosen(i / 2 + j + l++, 2)) continue;
                     const std::string rib = roomOf(shader, more);
                     const Traced one = trace(rib, false, 16, depth, s), all = trace(rib, true, 16, depth, s);
                     EXPECT_GT(sumOf(one), 1) << shader << more;
@@ -299,6 +317,11 @@ TEST(Blocks, AreFollowedThroughFog) {
                     EXPECT_EQ(differences(one, trace(rib, true, 4, depth, s)), 0u) << shader << more << depth;
                     EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
                 }
+            }
+            ++j;
+        }
+        ++i;
+    }
 }
 
 TEST(Blocks, EndPathsWhereTheyAreAsLongAsTheyMayBe) {
@@ -382,9 +405,11 @@ TEST(Blocks, FollowLoopsAndWalksBelowSurfaces) {
     const std::string shallow = "Attribute \"trace\" \"int maxdiffusedepth\" 1 \"int maxspeculardepth\" 1\n";
     Settings local = pathSettings();
     local.localRoulette = true;
+    size_t turn = 0; // not nightly: a third of shader, scene and setting, each of them several times
     for (const char* shader : {"\"turns\"", "\"milky\"", "\"apart2\"", "\"near\"", "\"away\""})
         for (const std::string& more : {std::string(), sky, shallow, sky + "Opacity .5 .6 .7\n"})
             for (const Settings& s : {pathSettings(), local}) {
+                if (!chosen(turn++, 3)) continue;
                 const std::string rib = roomOf(shader, more);
                 const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);
                 EXPECT_GT(sumOf(one), 1) << shader << more;

@@ -217,6 +217,7 @@ TEST(Emitters, TheTreeAgainstEvenChoice) {
     Scene tree(lit(lights), of(0)), uniform(lit(lights), even);
     double a = 0, b = 0, timeA = 0, timeB = 0;
     for (int k = 0; k < 12; ++k) {
+        if (!chosen(size_t(k), 3)) continue;
         const CameraRay view =
             rayTo({float(k) * 2 - 11 + .3f, .4f, float(k % 5) * 3 - 6}, {float(k) * 2 - 11, 0, float(k % 5) * 3 - 6});
         const int n = samples(2000);

@@ -234,6 +234,7 @@ TEST(Gather, RaysOfWaitingKernelsEnd) {
                                 "comp(c, 0) >= 0 ? c : color 0;";
     for (const auto& [name, body] : {std::pair<std::string, std::string>{"gends", gathers}, {"tends", several}, {"lends", loop}})
         for (const int n : {1, 2, 3, 8}) {
+            if (name == "lends" && n == 8 && !nightly()) continue; // as many points as all the others together
             const std::string count = std::to_string(n), called = name + count;
             std::string text = body;
             for (size_t at; (at = text.find('N')) != std::string::npos;) text.replace(at, 1, count);

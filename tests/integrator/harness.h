@@ -16,7 +16,7 @@ namespace alpenglow::integrator::testing {
 
 inline constexpr double kZ = teststat::kZ;
 
-using teststat::nightly, teststat::samples, teststat::seedBase;
+using teststat::chosen, teststat::nightly, teststat::samples, teststat::seedBase;
 
 /// A folder for shaders that a test writes itself. Gone when the program ends.
 inline const std::string& shaderFolder() {

@@ -229,10 +229,12 @@ TEST(Lamps, Still) {
     for (const Lamp& l : kLamps) expectAgreement(l, Still, nightly());
 }
 TEST(Lamps, Moved) {
-    for (const Lamp& l : kLamps) expectAgreement(l, Moved, nightly());
+    for (const Lamp& l : kLamps)
+        if (chosen(size_t(&l - kLamps) + 1, 2)) expectAgreement(l, Moved, nightly());
 }
 TEST(Lamps, Deformed) {
-    for (const Lamp& l : kLamps) expectAgreement(l, Deformed, nightly());
+    for (const Lamp& l : kLamps)
+        if (chosen(size_t(&l - kLamps), 2)) expectAgreement(l, Deformed, nightly());
 }
 TEST(Lamps, Displaced) {
     for (const Lamp& l : kLamps)

@@ -72,12 +72,16 @@ double counted(double albedo, double index, int n) {
 
 TEST_F(Subsurface, TheHalfSpaceOfTheTableIsThatOfACount) {
     // A count that reflects at the surface and walks on with a fresh distance: distances forget.
-    for (const double index : {1., 1.3, 1.5, .8})
+    size_t turn = 0;
+    for (const double index : {1., 1.3, 1.5, .8}) {
+        size_t of = turn++;
         for (const double albedo : {.3, .9}) {
-            const int n = samples(40000, 400000); // finds .01, nightly .003
+            if (!chosen(of++, 2)) continue;
+            const int n = samples(16000, 400000); // finds .014, nightly .003
             EXPECT_NEAR(AlbedoInversion(index).reflectance(albedo), counted(albedo, index, n), 3.5 * .5 / std::sqrt(double(n)))
                 << index << " " << albedo;
         }
+    }
     const AlbedoInversion h(1.3);
     for (const double r : {.01, .2, .5, .8, .97}) EXPECT_NEAR(h.reflectance(h.albedo(r)), r, 1e-9);
     EXPECT_EQ(h.albedo(0), 0);
@@ -89,13 +93,18 @@ TEST_F(Subsurface, WithoutABoundaryItIsChandrasekhars) {
     for (const double w : {.2, .6, .95}) {
         const int n = 800;
         std::vector<double> h(n, 1), next(n);
-        for (int round = 0; round < 200; ++round) {
+        double moved = 1;
+        for (int round = 0; round < 200 && moved > 1e-9; ++round) {
+            moved = 0;
             for (int i = 0; i < n; ++i) {
                 double sum = std::sqrt(1 - w);
                 for (int k = 0; k < n; ++k) sum += w / 2 * (k + .5) / n * h[size_t(k)] / ((i + .5) / n + (k + .5) / n) / n;
                 next[size_t(i)] = 1 / sum;
             }
-            for (int i = 0; i < n; ++i) h[size_t(i)] = .5 * (h[size_t(i)] + next[size_t(i)]);
+            for (int i = 0; i < n; ++i) {
+                moved = std::max(moved, std::fabs(next[size_t(i)] - h[size_t(i)]));
+                h[size_t(i)] = .5 * (h[size_t(i)] + next[size_t(i)]);
+            }
         }
         double first = 0;
         for (int i = 0; i < n; ++i) first += (i + .5) / n * h[size_t(i)] / n;

@@ -14,8 +14,8 @@ namespace {
 
 constexpr int kPoints = 37;
 
-int programs() { return kSanitized ? 50 : nightly() ? 200 : 60; }
-int derivedPrograms() { return nightly() && !kSanitized ? 40 : 20; }
+int programs() { return kSanitized ? 50 : nightly() ? 200 : 40; }
+int derivedPrograms() { return nightly() && !kSanitized ? 40 : 14; }
 
 /// Well-typed statements over floats, colours, points and an array. Loops have at most eight turns; jumps leave one or two of
 /// them.

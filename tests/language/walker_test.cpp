@@ -25,7 +25,7 @@ uint64_t firstProgram() {
 }
 
 /// Programs in all the parts together. Nearly all the time goes into machine code for them, so those of every day are shorter.
-int wanted(bool night) { return night ? 10000 : 260; }
+int wanted(bool night) { return night ? 10000 : 180; }
 int wanted() { return kSanitized ? 80 : wanted(nightly()); }
 
 float input(const std::string& name, int component, int point) {

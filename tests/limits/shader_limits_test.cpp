@@ -1,4 +1,5 @@
 // What a shader may cost.
+#include "../nightly.h"
 #include "../sanitized.h"
 #include "base/limits.h"
 #include "rsl/compiler.h"
@@ -165,6 +166,7 @@ TEST(ShaderLimits, InliningForTheAffineProof) {
     ASSERT_TRUE(small);
     EXPECT_TRUE(small->facts.affine);
     if (kSanitized) GTEST_SKIP() << "a kernel of a million operations takes minutes here";
+    if (!nightly()) return; // a kernel of a million operations takes half a minute
     auto large = sum(24);
     ASSERT_TRUE(large);
     EXPECT_FALSE(large->facts.affine);

@@ -425,7 +425,7 @@ TEST(PhotonMaps, HollowFurnace) {
     };
     // Photons do not meet the plate.
     Scene emitting(inWorld(lamp + ball), path());
-    const auto stored = emitted(emitting, 200000);
+    const auto stored = emitted(emitting, nightly() ? 200000 : 100000);
     const std::vector<std::string> names = {"room.photons"};
     struct Case {
         const char* shader;

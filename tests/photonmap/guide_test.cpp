@@ -213,7 +213,7 @@ TEST(CausticGuide, PathsHaveTheSameLight) {
         EXPECT_EQ(counted.guided > 0, c.name != "mirror that waits") << c.name << ": " << figures.photons;
         Counters wrong;
         guideWrongly(s, {-2, -.1f, -2}, {2, 2.1f, 2});
-        expectSame(s.estimate(c.ray, n, &wrong), plain, 2 * c.precision, c.name + ", a guide that is wrong");
+        expectSame(s.estimate(c.ray, n / 4, &wrong), plain, 2 * c.precision, c.name + ", a guide that is wrong");
         EXPECT_GT(wrong.guided, 0u) << c.name;
     }
 }
@@ -258,9 +258,9 @@ TEST(CausticGuide, BlocksHaveTheBitsOfSinglePoints) {
         std::vector<std::vector<SampleResult>> all;
         for (const bool blocks : {true, false}) {
             Scene s(inWorld(c.scene), path(blocks));
-            guide(s, .3f);
+            guide(s, .3f, nightly() ? 40000 : 10000);
             std::vector<CameraRay> rays;
-            for (int i = 0; i < 1500; ++i) {
+            for (int i = 0; i < (nightly() ? 1500 : 600); ++i) {
                 CameraRay r = c.ray;
                 r.px = i % 40, r.py = i / 40, r.sample = uint32_t(i % 3);
                 rays.push_back(r);
@@ -268,6 +268,7 @@ TEST(CausticGuide, BlocksHaveTheBitsOfSinglePoints) {
             Counters n;
             all.push_back(s.trace(rays, &n));
             if (!blocks) EXPECT_EQ(n.inBlocks, 0u);
+            if (c.name != "mirror that waits") EXPECT_GT(n.guided, 0u) << c.name;
         }
         size_t differ = 0;
         for (size_t i = 0; i < all[0].size(); ++i) differ += !(all[0][i].color == all[1][i].color);

@@ -117,7 +117,8 @@ protected:
     }
 };
 
-// The proof of issue 15: twelve scenes against rays, 400 of them for each pixel, whose own error is about .005.
+// The proof of issue 15: twelve scenes (here every second) against rays, 400 of them for each pixel, whose own error is about
+// .005.
 TEST_F(PointScenes, OcclusionOfTwelveScenesIsThatOfRays) {
     shader("baker", "", "bake3d(\"o.ptc\", \"\", P, normalize(N), \"interpolate\", 1); Ci = 1;");
     shader("traced", "", "Ci = occlusion(P, n, 400);");
@@ -125,7 +126,10 @@ TEST_F(PointScenes, OcclusionOfTwelveScenesIsThatOfRays) {
            "Ci = occlusion(P, n, 1, \"pointbased\", 1, \"filename\", \"o.ptc\", \"maxsolidangle\", a);");
     shader("standard", "", "Ci = occlusion(P, n, 1, \"pointbased\", 1, \"filename\", \"o.ptc\");");
     double sums[3] = {};
+    size_t turn = 0, count = 0;
     for (const auto& [name, geometry] : scenes()) {
+        if (!chosen(turn++, 2)) continue;
+        ++count;
         bake(geometry);
         const auto all = pictures(geometry, {"Surface \"traced\"\n", "Surface \"points\" \"a\" [.5]\n", "Surface \"standard\"\n",
                                              "Surface \"points\" \"a\" [.02]\n"});
@@ -135,7 +139,7 @@ TEST_F(PointScenes, OcclusionOfTwelveScenesIsThatOfRays) {
         std::printf("%-10s %.4f %.4f %.4f\n", name.c_str(), e[0], e[1], e[2]);
         EXPECT_LT(e[1], .03) << name;
     }
-    std::printf("mean       %.4f %.4f %.4f\n", sums[0] / 12, sums[1] / 12, sums[2] / 12);
+    std::printf("mean       %.4f %.4f %.4f\n", sums[0] / double(count), sums[1] / double(count), sums[2] / double(count));
     EXPECT_LT(sums[1], sums[0]) << "smaller angles are truer";
     EXPECT_LT(sums[2], sums[1]);
 }
@@ -187,8 +191,9 @@ TEST_F(PointScenes, BouncesAddUpAsTheSeriesSays) {
                      "\"pointbased\", 1, \"filename\", from, \"maxsolidangle\", .04); Ci = e;"
                      " bake3d(to, \"\", P, -normalize(N), \"interpolate\", 1, \"_radiosity\", 1 + .6 * e); }\n");
     const auto frame = [&](const std::string& surface) {
-        render(header("a.exr", 24) + "Projection \"perspective\" \"fov\" 90\nWorldBegin\nShadingRate 1\nSurface " + surface +
-               "\n" + walls + "WorldEnd\n");
+        render(header("a.exr", nightly() ? 24 : 16) +
+               "Projection \"perspective\" \"fov\" 90\nWorldBegin\nShadingRate 1\nSurface " + surface + "\n" + walls +
+               "WorldEnd\n");
     };
     frame("\"begin\"");
     double want = 1;

@@ -1,5 +1,6 @@
 """What the tests of the Python module share."""
 import os
+import signal
 import struct
 import subprocess
 import sys
@@ -10,6 +11,7 @@ import zlib
 import numpy
 
 sys.dont_write_bytecode = True
+signal.signal(signal.SIGINT, signal.default_int_handler)  # background jobs of a shell ignore it; tests send it
 os.environ["ALPENGLOW_RC"] = "off"  # not that of who runs the tests
 PROGRAM = os.environ.get("ALPENGLOW_PROGRAM", "alpenglow")
 SOURCE = os.environ.get("ALPENGLOW_SOURCE", os.path.dirname(os.path.dirname(os.path.dirname(os.path.abspath(__file__)))))

@@ -1,6 +1,7 @@
 // T9 (docs/proof.md): the numbers a render reports about its noise are true. A thousand small renders of known pictures.
 #include "render/filtersampler.h"
 #include "render/noise.h"
+#include "statistics/nightly.h"
 #include <gtest/gtest.h>
 
 namespace honest_noise_test {
@@ -55,8 +56,9 @@ TEST(HonestNoise, NinetyFivePercentIntervalsCoverTheTruth) {
     for (uint32_t spp : {16u, 64u, 256u}) {
         int covered = 0, total = 0;
         double reported = 0, real = 0, moments = 0;
+        const uint64_t seeds = spp < 256 || teststat::nightly() ? 1000 : 300; // of seven pictures
         for (int of = 0; of < kWidth - 1; ++of)
-            for (uint64_t seed = 0; seed < 1000; ++seed) {
+            for (uint64_t seed = 0; seed < seeds; ++seed) {
                 Film f = renderKnown(seed * kWidth + uint64_t(of), spp, of);
                 Interval i = confidenceInterval(pixelError(f, 1, 1, kHeight), 0.95);
                 covered += std::fabs(i.mean - kPixels[of].truth) <= i.halfWidth;

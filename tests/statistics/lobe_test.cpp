@@ -109,13 +109,14 @@ TEST(LobeCases, EveryKindOfTheListHasCases) {
 
 // Integral of the density over a cell of (cos theta, phi): 3 x 3 Gauss points, cells split in four until the parts add up to the
 // whole. The grid's pole is the lobe's axis, so that a cone's edge is an edge of cells; a horizon's edge runs through them and is
-// closed in on down to `deepest` halvings. What is left there is a strip 2^-10 of a coarse cell wide, half of it in error at
-// worst and both ways alike: below 1e-4 of the cell, far under the noise of the counts.
+// closed in on down to `deepest` halvings. What is left there is a strip 2^-8 of a coarse cell wide, half of it in error at
+// worst and both ways alike: below 4e-4 of the cell, far under the noise of the counts.
 struct Depths {
     int shallowest, deepest;
+    double close; ///< what four parts of a cell and the whole may differ by
 };
-constexpr Depths kCoarse = {3, 10}; ///< a narrow lobe inside a wide cell must not be missed
-constexpr Depths kFine = {1, 8};    ///< nightly cells are a fifth as wide
+constexpr Depths kCoarse = {3, 8, 1e-7}; ///< a narrow lobe inside a wide cell must not be missed; of 2e5 draws a 50th of one
+constexpr Depths kFine = {1, 8, 1e-8};   ///< nightly cells are a fifth as wide
 // Whether the edge of the horizon may run through a cell: near the pole it can cut off a sliver between all quadrature points.
 bool meetsHorizon(const LobeParams& p, const Basis& grid, double c0, double c1, double p0, double p1) {
     if (!p.hasHorizon) return false;
@@ -148,7 +149,8 @@ double cellIntegral(const LobeKind& k, const LobeParams& p, const Basis& grid, d
                       gauss3(k, p, grid, c, c1, f, p1)};
     double sum = part[0] + part[1] + part[2] + part[3];
     // The tolerance is for the whole cell; at the edge errors of neighbours do not add up, so it need not shrink with the area.
-    if (depth >= d.deepest || (depth >= d.shallowest && std::fabs(sum - whole) < 1e-8 && !meetsHorizon(p, grid, c0, c1, p0, p1)))
+    if (depth >= d.deepest ||
+        (depth >= d.shallowest && std::fabs(sum - whole) < d.close && !meetsHorizon(p, grid, c0, c1, p0, p1)))
         return sum;
     return cellIntegral(k, p, grid, c0, c, p0, f, part[0], d, depth + 1) +
            cellIntegral(k, p, grid, c, c1, p0, f, part[1], d, depth + 1) +
@@ -156,8 +158,8 @@ double cellIntegral(const LobeKind& k, const LobeParams& p, const Basis& grid, d
            cellIntegral(k, p, grid, c, c1, f, p1, part[3], d, depth + 1);
 }
 
-// No tolerance but the statistics' own: expectations are integrals to about 1e-7 of the whole, edges included. False: too few
-// cells to test.
+// No tolerance but the statistics' own: expectations are integrals to about 1e-6 (nightly 1e-7) of the whole, edges included.
+// False: too few cells to test.
 bool followsItsDensity(const Case& c, size_t ci, int kN) {
     const int kCos = nightly() ? 51 : 10, kPhi = nightly() ? 102 : 20;
     const LobeKind& k = *findLobe(c.kind);
@@ -291,7 +293,9 @@ TEST(LobeT2, SampledDirectionsHaveFiniteDensityAndValue) {
 TEST(LobeT2, SupportOfTheDensityCoversTheValue) {
     std::mt19937_64 rng(6 + seedBase());
     std::normal_distribution<float> g;
+    size_t turn = 0; // 3 is no divisor of the 20 cases of a viewer: all kinds have their turn
     for (const Case& c : allCases()) {
+        if (!chosen(turn++, 3)) continue;
         const LobeKind& k = *findLobe(c.kind);
         const int n = samples(3000, k.distribution ? 20000 : 100000);
         for (int i = 0; i < n; ++i) {
@@ -305,7 +309,9 @@ TEST(LobeT2, SupportOfTheDensityCoversTheValue) {
 // lobes only (no horizon, viewer well above the surface and the lobe's own plane); delta found with 99 % power: 7.1 r / sqrt(N),
 // r < 3: 7 % here, below 1 % nightly.
 TEST(LobeT4, MeanOfTheWeightsIsTheIntegral) {
+    size_t turn = 0; // 3 is no divisor of the 20 cases of a viewer: all kinds have their turn
     for (const Case& c : allCases(29)) {
+        if (!chosen(turn++, 3)) continue;
         const LobeKind& k = *findLobe(c.kind);
         if (c.p.hasHorizon || c.p.wo.z < 0.2f || dot(c.p.axis, c.p.wo) < 0.2f || c.kind == "uniform" || c.kind == "cosine")
             continue; // edges: below

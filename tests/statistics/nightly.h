@@ -8,7 +8,7 @@
 
 namespace alpenglow::teststat {
 
-using alpenglow::nightly;
+using alpenglow::chosen, alpenglow::nightly;
 /// The first here, the second nightly.
 inline int samples(int fast, int night) { return nightly() ? night : fast; }
 /// Sixteen times as many nightly.

@@ -45,10 +45,12 @@ double integral(const LobeKind& k, const LobeParams& p, int n) {
 
 TEST(WhiteFurnace, SamplesBringTheIntegral) {
     int compared = 0;
+    size_t turn = 0; // 3 is no divisor of the 35 lobes of a kind: each has other ones
     for (const LobeKind* k : lobeKinds()) {
         if (!k->distribution) continue;
         for (const float roughness : kRoughness)
             for (const float cosine : kCosines) {
+                if (!teststat::chosen(turn++, 3)) continue;
                 const LobeParams p = lobe(roughness, cosine);
                 const std::string what =
                     std::string(k->name) + ", roughness " + std::to_string(roughness) + ", cosine " + std::to_string(cosine);
@@ -75,7 +77,7 @@ TEST(WhiteFurnace, SamplesBringTheIntegral) {
                     << what << ": " << mean << " +- " << se << ", " << fine;
             }
     }
-    EXPECT_GE(compared, 120); // of 245
+    EXPECT_GE(compared, teststat::nightly() ? 120 : 40); // of 245, of 82
 }
 
 } // namespace whitefurnace_test

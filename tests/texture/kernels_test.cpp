@@ -1,5 +1,6 @@
 // Filters that have a shape: lookups against sums of many points over the footprint, weighed as the pixel filters are (RISpec
 // 3.2, appendix E, written out here anew), and what such filters do exactly.
+#include "../nightly.h"
 #include "pictures.h"
 #include <cmath>
 #include <limits>
@@ -126,11 +127,13 @@ TEST(Kernels, CatmullRomInterpolatesTexelsAndParabolas) {
 
 TEST(Kernels, KeepConstantsAndStayFinite) {
     constexpr float inf = std::numeric_limits<float>::infinity(), nan = std::numeric_limits<float>::quiet_NaN();
+    size_t turn = 0; // 3 divides none of the numbers of wraps, sizes and places: every two of all have their turn
     for (const char* wrap : {"clamp", "periodic", "mirror", "black"}) {
         const auto map = makeTextureFrom(withWrap(constant(50, 30, .25f), wrap));
         for (const Filter f : kShaped)
             for (const float size : {0.f, 1e-6f, .01f, .3f, 5.f, 1e20f, inf, nan})
                 for (const float s : {.5f, -.2f, 1e9f, inf, nan}) {
+                    if (!chosen(turn++, 3)) continue;
                     LookupOptions o;
                     o.filter = f;
                     float v[3] = {-1, -1, -1}, slopes[6], curves[9];

@@ -1,6 +1,7 @@
 // The kernel cache on disk: files named by the key, whole or absent, the least recently used dropped.
 #pragma once
 #include "rsl/jit/kernelfile.h"
+#include <atomic>
 
 namespace alpenglow::rsl::jit {
 
@@ -17,15 +18,19 @@ public:
     /// write to it.
     /// "" when it can be used or does not exist yet.
     std::string refusal() const;
-    /// A full or read-only disk is no error: the next run compiles again.
+    /// A full or read-only disk is no error: the next run compiles again. Trims once in 256 kernels or after a 64th of the
+    /// largest size, so the folder may be larger by that.
     void store(const std::string& key, const KernelFile&) const;
     const std::string& directory() const { return directory_; }
 
-private:
+    /// Drops the least recently used kernels beyond the largest size, and files that killed programs left.
     void trim() const;
+
+private:
     std::string path(const std::string& key) const;
     std::string directory_;
     size_t maxBytes_;
+    mutable std::atomic<size_t> written_ = 0; ///< bytes since the last look at the folder
 };
 
 } // namespace alpenglow::rsl::jit

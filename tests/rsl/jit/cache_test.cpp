@@ -179,9 +179,31 @@ TEST(Cache, TemporariesOfKilledProgramsGo) {
     jit::KernelCache cache(d.path.string(), size_t(1) << 30);
     for (const char* name : {"old.kernel.1.0.tmp", "new.kernel.1.0.tmp"}) std::ofstream(d.path / name) << "x";
     fs::last_write_time(d.path / "old.kernel.1.0.tmp", fs::file_time_type::clock::now() - std::chrono::hours(25));
-    cache.store("k", simpleKernel());
+    cache.trim();
     EXPECT_FALSE(fs::exists(d.path / "old.kernel.1.0.tmp"));
     EXPECT_TRUE(fs::exists(d.path / "new.kernel.1.0.tmp"));
+}
+
+// What looks at the whole folder is not done for each kernel, but often enough that the folder stays as small as it may be.
+TEST(Cache, IsTrimmedNowAndThen) {
+    Directory d;
+    const jit::KernelFile f = simpleKernel();
+    const size_t size = jit::pack(f).size(), most = 640 * size; // a 64th of it: ten kernels
+    const auto looks = [&](const std::string& key, size_t count) {
+        jit::KernelCache cache(d.path.string(), most);
+        const fs::path old = d.path / "old.kernel.1.0.tmp"; // a look takes it away
+        int n = 0;
+        for (size_t i = 0; i < count; ++i) {
+            std::ofstream(old) << "x";
+            fs::last_write_time(old, fs::file_time_type::clock::now() - std::chrono::hours(25));
+            cache.store(key + std::to_string(i), f);
+            n += !fs::exists(old);
+        }
+        return n;
+    };
+    EXPECT_EQ(looks("ab", 8), 0);
+    EXPECT_EQ(looks("00ab", 8), 8) << "one key in 256";
+    EXPECT_EQ(looks("ab", 44), 4) << "a 64th of the largest size";
 }
 
 TEST(Module, BuildIdsAreInTheKey) {

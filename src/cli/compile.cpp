@@ -5,7 +5,7 @@
 #include "cli/command.h"
 #include "cli/jsonreport.h"
 #include "rsl/compiler.h"
-#include "rsl/front/messages.h"
+#include "rsl/front/complete.h"
 #include "rsl/nonlinear.h"
 #include <CLI/CLI.hpp>
 #include <fstream>

@@ -4,6 +4,7 @@
 #include "base/pattern.h"
 #include "base/printable.h"
 #include "rsl/front/protocol.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -271,14 +272,17 @@ void hashText(const std::string& s, float out[3]) {
 static void complain(Arguments a, const SourcePlace& place, Diagnostics& diagnostics) {
     std::string text;
     while (a.more(true)) text += a.string();
+    Diagnostic d{Severity::Error, Rie::Consistency, place, text, {}, {}};
+    if (!a.site.pairStrings.empty()) d.id = a.site.pairStrings[0]; // ir/complaint.h
     diagnostics.reportOnce("complaint:" + place.file + std::to_string(place.line) + ":" + std::to_string(place.column) + text,
-                           {Severity::Error, Rie::Consistency, place, text, {}, {}});
+                           std::move(d));
 }
 
 bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* in, float* out, Diagnostics& diagnostics,
                   const PrintFn& print, const std::vector<std::string>* files) {
     const std::string file =
         files && s.place.file >= 0 && size_t(s.place.file) < files->size() ? (*files)[size_t(s.place.file)] : "";
+    const SourcePlace at{file, s.place.line, s.place.column};
     auto each = [&](auto&& f) {
         for (int l = 0; l < lanes; l++)
             if (mask >> l & 1) f(l);
@@ -288,26 +292,14 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
         bool full = false;
         put(0, lane, std::bit_cast<float>(internRuntimeString(t, full)));
         if (!full) return;
-        Diagnostic d;
-        d.severity = Severity::Error;
-        d.code = Rie::Limit;
-        d.place = {file, s.place.line, s.place.column};
-        d.message = "the strings that shaders make while they run take more than " + std::to_string(limits::kRuntimeStrings) +
-                    " bytes; further ones are empty";
-        d.hint = "a string that differs at every point is kept for each of them: print it, or make it from uniform values";
-        diagnostics.reportOnce("runtime strings", d);
+        diagnostics.reportOnce("runtime strings", diagnostic(msg::kStringsLimit(limits::kRuntimeStrings), Rie::Limit, at));
     };
     // A string that is joined with itself in a loop doubles each time.
     auto cut = [&](std::string& t) {
         if (t.size() <= limits::kTokenBytes) return;
         t.resize(limits::kTokenBytes);
-        Diagnostic d;
-        d.severity = Severity::Error;
-        d.code = Rie::Limit;
-        d.place = {file, s.place.line, s.place.column};
-        d.message =
-            s.op + "(): a string has no more than " + std::to_string(limits::kTokenBytes) + " characters; the rest is cut off";
-        diagnostics.reportOnce("stringlimit:" + file + std::to_string(s.place.line), d);
+        diagnostics.reportOnce("stringlimit:" + file + std::to_string(s.place.line),
+                               diagnostic(msg::kStringLimit(s.op, limits::kTokenBytes), Rie::Limit, at));
     };
     if (s.op == "incategory") { // getshaders() with a category that is known now
         each([&](int l) {
@@ -316,16 +308,11 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
             put(0, l, inCategory(wanted, s.strings[1]) ? 1 : 0);
         });
     } else if (s.op == "complaint") { // what the builder could only say about a way through the shader
-        if (mask) complain(Arguments(s, lanes, in, std::countr_zero(mask)), {file, s.place.line, s.place.column}, diagnostics);
+        if (mask) complain(Arguments(s, lanes, in, std::countr_zero(mask)), at, diagnostics);
     } else if (s.op == "arraylimit") {
-        Diagnostic d;
-        d.severity = Severity::Error;
-        d.code = Rie::Limit;
-        d.place = {file, s.place.line, s.place.column};
-        d.message = "an array cannot grow beyond " + std::to_string(mask ? int(in[std::countr_zero(mask)]) : 0) +
-                    " elements; what follows is left out";
-        d.hint = "resize() or reserve() it with the number it needs";
-        diagnostics.reportOnce("arraylimit:" + file + std::to_string(s.place.line), d);
+        const int most = mask ? int(in[std::countr_zero(mask)]) : 0;
+        diagnostics.reportOnce("arraylimit:" + file + std::to_string(s.place.line),
+                               diagnostic(msg::kArrayLimit(most), Rie::Limit, at));
     } else if (s.op == "format") {
         each([&](int l) {
             std::string t = formatSite(s, lanes, in, l);
@@ -352,14 +339,8 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
             const std::string pattern = a.string(), subject = a.string();
             std::string error;
             put(0, l, matchText(pattern, subject, &error) ? 1.0f : 0.0f);
-            if (!error.empty()) {
-                Diagnostic d;
-                d.severity = Severity::Error;
-                d.code = Rie::Syntax;
-                d.place = {file, s.place.line, s.place.column};
-                d.message = "match(): \"" + pattern + "\": " + error;
-                diagnostics.reportOnce("match:" + pattern, d);
-            }
+            if (!error.empty())
+                diagnostics.reportOnce("match:" + pattern, diagnostic(msg::kMatchPattern(pattern, error), Rie::Syntax, at));
         });
     } else if (s.op == "ctransform") { // spaces that are known only now
         each([&](int l) {
@@ -374,13 +355,8 @@ bool basicService(const ir::Site& s, uint64_t mask, int32_t lanes, const float* 
             };
             for (const std::string& t : {from, to})
                 if (!t.empty() && !known(t))
-                    diagnostics.reportOnce("ctransform:" + t,
-                                           {Severity::Warning,
-                                            Rie::NoError,
-                                            {file, s.place.line, s.place.column},
-                                            "there is no colour space \"" + t + "\"; the colour stays as it is",
-                                            "there are: rgb, hsv, hsl, yiq, xyz",
-                                            {}});
+                    diagnostics.reportOnce("ctransform:" + t, diagnostic(msg::kUnknownColourSpace(t), Rie::NoError, at,
+                                                                         "there are: rgb, hsv, hsl, yiq, xyz"));
             FormatValue v = a.value();
             float c[3] = {v.numbers[0], v.numbers[1], v.numbers[2]}, r[3];
             if (from != to && known(from) && known(to)) {

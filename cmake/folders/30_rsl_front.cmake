@@ -1,4 +1,4 @@
-folder_library(rsl/front DEPS shadeops base)
+folder_library(rsl/front DEPS rsl_messages shadeops base)
 folder_tests(rsl/front DEPS rsl_front)
 
 # The headers in shaders/include go into the program: they are found wherever it is installed.

@@ -25,4 +25,5 @@ add_custom_target(shadeops_manual
   COMMAND alpenglow info --shadeops --markdown > ${CMAKE_SOURCE_DIR}/docs/shadeops.md
   COMMAND alpenglow info --requests --markdown > ${CMAKE_SOURCE_DIR}/docs/rib.md
   COMMAND alpenglow info --options --markdown > ${CMAKE_SOURCE_DIR}/docs/options.md
-  DEPENDS alpenglow COMMENT "docs/shadeops.md, docs/rib.md, docs/options.md" VERBATIM)
+  COMMAND alpenglow info --messages --markdown > ${CMAKE_SOURCE_DIR}/docs/messages.md
+  DEPENDS alpenglow COMMENT "docs/shadeops.md, docs/rib.md, docs/options.md, docs/messages.md" VERBATIM)

@@ -52,7 +52,7 @@ std::vector<OptionText> optionTextsOf(const CLI::App& app, const std::string& gr
 
 bool OptionText::takesFile() const { return argument.starts_with("FILE"); }
 bool OptionText::takesFolders() const { return argument == "DIR" || argument == "DIRS"; }
-bool OptionText::takesListed() const { return argument == "[NAME]"; }
+bool OptionText::takesListed() const { return argument == "[NAME]" || argument == "[ID]"; }
 
 ProgramText programText(const CLI::App& app) {
     ProgramText p{app.get_name(), app.get_description(), app.get_footer(), optionTextsOf(app, ""), {}};

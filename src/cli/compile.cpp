@@ -4,8 +4,10 @@
 #include "base/printable.h"
 #include "cli/command.h"
 #include "cli/jsonreport.h"
+#include "cli/optionmanual.h"
 #include "rsl/compiler.h"
-#include "rsl/front/messages.h"
+#include "rsl/front/complete.h"
+#include "rsl/messages/messages.h"
 #include "rsl/nonlinear.h"
 #include <CLI/CLI.hpp>
 #include <fstream>
@@ -55,37 +57,70 @@ std::vector<std::shared_ptr<const rsl::CompiledShader>> kindsOf(const std::share
     return all;
 }
 
+struct CompileArguments {
+    std::vector<std::string> files, searchPaths, defines;
+    std::string dialect, explain;
+    int lanes = 16;
+    bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false, warn = false, json = false,
+         allowExec = false;
+};
+
+/// The command's options. The one that asks for an explanation comes back.
+CLI::Option* addOptions(CLI::App& c, CompileArguments& a) {
+    c.add_option("shaders", a.files, "RSL files; - is standard input")->type_name("FILE");
+    CLI::Option* explain = c.add_option("--explain", a.explain, "Explain the message with this id, or list all messages")
+                               ->expected(0, 1)
+                               ->type_name("[ID]");
+    c.add_option("-I,--searchpath", a.searchPaths, "Folders for #include, separated by :")
+        ->type_name("DIRS")
+        ->allow_extra_args(false);
+    c.add_option("-D", a.defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
+    addDialect(c, a.dialect);
+    c.add_flag("--allow-exec", a.allowExec, "Allow the shader to load plug-ins");
+    c.add_option("--lanes", a.lanes, "SIMD width of the code, in points")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
+    c.add_flag("--path", a.path, "As for Hider \"path\": diffuse, specular and phong become requests");
+    c.add_flag("--mixed", a.mixed, "Compile the varying build: uniform values in lanes, for batches of several instances");
+    c.add_flag("--suspend", a.suspend, "Compile the suspending form even if the shader is affine");
+    c.add_flag("--dump-ir", a.ir, "Print the intermediate code after all passes");
+    c.add_flag("--dump-llvm", a.llvm, "Print the LLVM code too");
+    c.add_flag("-W,--warnings", a.warn, "Warn about unused, uninitialised and (under path) non-linear use, too");
+    c.add_flag("--json", a.json, "Print diagnostics as JSON on standard output, for editors");
+    c.add_flag("-q,--quiet", a.quiet, "Print errors only");
+    c.footer("All shaders of a file are compiled. Errors are shown with file:line:column, the line and a caret. Exit status 0 "
+             "when all shaders compile, else 1.");
+    return explain;
+}
+
+/// `paths`: where shaders are looked for.
+rsl::ShaderCompiler::Settings settingsOf(const CompileArguments& a, std::vector<std::string>& paths) {
+    rsl::ShaderCompiler::Settings settings;
+    for (const std::string& d : a.defines) {
+        size_t eq = d.find('=');
+        settings.defines.emplace_back(d.substr(0, eq), eq == std::string::npos ? "1" : d.substr(eq + 1));
+    }
+    settings.lint = a.warn;
+    settings.dialect = a.dialect;
+    paths = {"."};
+    for (std::string& f : folders(a.searchPaths)) paths.push_back(std::move(f));
+    for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
+    if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
+    settings.allowExec = a.allowExec;
+    settings.pluginPaths = paths;
+    return settings;
+}
+
 } // namespace
 
 void addCompile(CLI::App& app, int* status) {
-    struct Arguments {
-        std::vector<std::string> files, searchPaths, defines;
-        std::string dialect;
-        int lanes = 16;
-        bool ir = false, llvm = false, path = false, mixed = false, suspend = false, quiet = false, warn = false, json = false,
-             allowExec = false;
-    };
-    auto a = std::make_shared<Arguments>();
+    auto a = std::make_shared<CompileArguments>();
     CLI::App* c = app.add_subcommand("compile", "Check and compile shaders");
-    c->add_option("shaders", a->files, "RSL files; - is standard input")->type_name("FILE")->required();
-    c->add_option("-I,--searchpath", a->searchPaths, "Folders for #include, separated by :")
-        ->type_name("DIRS")
-        ->allow_extra_args(false);
-    c->add_option("-D", a->defines, "Define a macro")->type_name("NAME[=TEXT]")->allow_extra_args(false);
-    addDialect(*c, a->dialect);
-    c->add_flag("--allow-exec", a->allowExec, "Allow the shader to load plug-ins");
-    c->add_option("--lanes", a->lanes, "SIMD width of the code, in points")->check(CLI::IsMember({4, 8, 16}))->type_name("N");
-    c->add_flag("--path", a->path, "As for Hider \"path\": diffuse, specular and phong become requests");
-    c->add_flag("--mixed", a->mixed, "Compile the varying build: uniform values in lanes, for batches of several instances");
-    c->add_flag("--suspend", a->suspend, "Compile the suspending form even if the shader is affine");
-    c->add_flag("--dump-ir", a->ir, "Print the intermediate code after all passes");
-    c->add_flag("--dump-llvm", a->llvm, "Print the LLVM code too");
-    c->add_flag("-W,--warnings", a->warn, "Warn about unused, uninitialised and (under path) non-linear use, too");
-    c->add_flag("--json", a->json, "Print diagnostics as JSON on standard output, for editors");
-    c->add_flag("-q,--quiet", a->quiet, "Print errors only");
-    c->footer("All shaders of a file are compiled. Errors are shown with file:line:column, the line and a caret. Exit status 0 "
-              "when all shaders compile, else 1.");
-    c->callback([a, status] {
+    CLI::Option* explain = addOptions(*c, *a);
+    c->callback([a, explain, status] {
+        if (explain->count()) {
+            *status = printTopic(Topic::Messages, a->explain, a->json);
+            return;
+        }
+        if (a->files.empty()) throw CLI::RequiredError("shaders");
         OrderedJson report = OrderedJson::array();
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
         std::string current, input;                                    // the current shader, and the text from standard input
@@ -95,23 +130,12 @@ void addCompile(CLI::App& app, int* status) {
             if (d.place.file.empty() && a->json) d.place.file = current;
             if (d.sourceLine.empty() && d.place.line > 0 && lines-- > 0) d.sourceLine = lineOf(d.place, input);
             rsl::complete(d);
-            if (d.id == "null-handle") return; // which co-shaders there are, only a scene knows
+            if (d.id == rsl::msg::kKindNullHandle.id) return; // which co-shaders there are, only a scene knows
             if (!a->json) print(d);
             else if (!a->quiet || d.severity >= Severity::Error) report.push_back(diagnosticJson(d));
         });
-        rsl::ShaderCompiler::Settings settings;
-        for (const std::string& d : a->defines) {
-            size_t eq = d.find('=');
-            settings.defines.emplace_back(d.substr(0, eq), eq == std::string::npos ? "1" : d.substr(eq + 1));
-        }
-        settings.lint = a->warn;
-        settings.dialect = a->dialect;
-        std::vector<std::string> paths{"."};
-        for (std::string& f : folders(a->searchPaths)) paths.push_back(std::move(f));
-        for (std::string& f : environmentShaders()) paths.push_back(std::move(f));
-        if (std::string s = shippedShaders(); !s.empty()) paths.push_back(s);
-        settings.allowExec = a->allowExec;
-        settings.pluginPaths = paths;
+        std::vector<std::string> paths;
+        rsl::ShaderCompiler::Settings settings = settingsOf(*a, paths);
         rsl::ShaderCompiler compiler(settings);
         rsl::KernelOptions options;
         options.lanes = a->lanes;
@@ -143,7 +167,7 @@ void addCompile(CLI::App& app, int* status) {
             }
             if (!all) {
                 ++failed;
-                if (diags.errors() == before) diags.report(Severity::Error, Rie::NoShader, {f}, "it cannot be compiled");
+                if (diags.errors() == before) diags.report(diagnostic(rsl::msg::kCannotCompile, Rie::NoShader, {f}));
             }
         }
         if (a->json) printReport({{"shaders", std::move(shaders)}}, std::move(report));

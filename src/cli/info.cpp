@@ -50,29 +50,21 @@ int shadeops(const std::string& name, bool json) {
 
 struct InfoArguments {
     std::string file, shadeop, dialect;
-    std::string names[5]; ///< of the topics, by their number
+    std::string names[6]; ///< of the topics, by their number
     std::vector<std::string> searchPaths;
     bool shaders = false, json = false, markdown = false, allowExec = false;
 };
 
 std::string dumped(const OrderedJson& j) { return j.dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n"; }
 
-/// Options, attributes, hiders, displays, requests.
+/// Options, attributes, hiders, displays, requests, messages.
 int topic(Topic t, const InfoArguments& a) {
     const std::string& name = a.names[size_t(t)];
     if (a.markdown && name.empty()) {
         std::fputs(topicPage(t).c_str(), stdout);
         return kDone;
     }
-    const std::string text = topicText(t, name);
-    if (text.empty()) {
-        const std::string near = nearestName(name, topicNames(t));
-        std::fprintf(stderr, "alpenglow: there is nothing of the name \"%s\"%s%s%s\n", printable(name).c_str(),
-                     near.empty() ? "" : "; did you mean \"", near.c_str(), near.empty() ? "" : "\"?");
-        return kDoneWithErrors;
-    }
-    std::fputs((a.json ? dumped(topicJson(t, name)) : text).c_str(), stdout);
-    return kDone;
+    return printTopic(t, name, a.json);
 }
 
 std::vector<std::string> searched(const InfoArguments& a) {
@@ -136,7 +128,7 @@ int shader(const InfoArguments& a) {
 void addInfo(CLI::App& app, int* status) {
     auto a = std::make_shared<InfoArguments>();
     CLI::App* c = app.add_subcommand(
-        "info", "Tell what is in a file or what a shader is, or how shadeops, requests, options and displays work");
+        "info", "Tell what is in a file or what a shader is, or how shadeops, requests, options, displays and messages work");
     c->add_option("file", a->file,
                   "RSL file (all its shaders), name of a shader on the search path, or a picture, map, point cloud, photon map, "
                   "part file, model or scene")
@@ -146,18 +138,21 @@ void addInfo(CLI::App& app, int* status) {
                            ->type_name("[NAME]");
     c->add_flag("--shaders", a->shaders,
                 "List the shaders that scenes find: in this folder, on the search path, and the shipped ones");
-    const std::pair<const char*, const char*> topics[] = {{"--options", "List the options, or print one name or category"},
-                                                          {"--attributes", "List the attributes, or print one name or category"},
-                                                          {"--hiders", "List the hiders and their parameters"},
-                                                          {"--displays", "List the types of Display and their parameters"},
-                                                          {"--requests", "List the RIB requests, or print the manual of one"}};
+    const std::pair<const char*, const char*> topics[] = {
+        {"--options", "List the options, or print one name or category"},
+        {"--attributes", "List the attributes, or print one name or category"},
+        {"--hiders", "List the hiders and their parameters"},
+        {"--displays", "List the types of Display and their parameters"},
+        {"--requests", "List the RIB requests, or print the manual of one"},
+        {"--messages", "List the messages of the compiler, or explain one by its id"}};
     std::vector<CLI::Option*> listed;
     for (const auto& [name, help] : topics)
         listed.push_back(c->add_option(name, a->names[listed.size()], help)->expected(0, 1)->type_name("[NAME]"));
     c->add_flag("--json", a->json, "As JSON");
     c->add_flag(
         "--markdown", a->markdown,
-        "Print the whole page: docs/shadeops.md with --shadeops, docs/rib.md with --requests, docs/options.md with the others");
+        "Print the whole page: docs/shadeops.md with --shadeops, docs/rib.md with --requests, docs/messages.md with --messages, "
+        "docs/options.md with the others");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);

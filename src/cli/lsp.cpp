@@ -157,7 +157,7 @@ void addLsp(CLI::App& app, int* status) {
         const auto plugins = std::make_shared<rsl::PluginLibrary>();
         if (a->allowExec)
             options.plugin = [plugins, paths = options.includePaths](const std::string& name, const std::string& beside,
-                                                                     std::string& why, std::string& hint) {
+                                                                     rsl::Raised& why, std::string& hint) {
                 std::vector<std::string> all{beside};
                 all.insert(all.end(), paths.begin(), paths.end());
                 return plugins->load(name, all, why, hint);

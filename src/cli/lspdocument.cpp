@@ -1,6 +1,6 @@
 #include "cli/lspdocument.h"
+#include "rsl/front/complete.h"
 #include "rsl/front/inspect.h"
-#include "rsl/front/messages.h"
 #include "rsl/front/visit.h"
 #include "rsl/nonlinear.h"
 #include <algorithm>

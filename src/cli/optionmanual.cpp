@@ -1,6 +1,10 @@
 #include "cli/optionmanual.h"
+#include "base/diagnostics.h"
 #include "base/knownoptions.h"
+#include "base/printable.h"
+#include "cli/command.h"
 #include "cli/foreignvariables.h"
+#include "cli/messagemanual.h"
 #include "cli/oldflags.h"
 #include "cli/oldnames.h"
 #include "cli/rcfile.h"
@@ -26,6 +30,7 @@ std::span<const OptionDescription> tableOf(Topic t) {
     case Topic::Displays:
         return known::knownDisplayParameters();
     case Topic::Requests:
+    case Topic::Messages:
         break;
     }
     return {};
@@ -57,6 +62,7 @@ std::string example(Topic t, const OptionDescription& d) {
     case Topic::Displays:
         return fmt::format("Display \"a.tif\" \"tiff\" \"rgba\" {}", parameter);
     case Topic::Requests:
+    case Topic::Messages:
         break;
     }
     return "";
@@ -214,6 +220,7 @@ std::string optionsPage() {
 } // namespace
 
 std::string topicText(Topic t, const std::string& name) {
+    if (t == Topic::Messages) return messageText(name);
     std::string out = headText(t, name), ignored;
     const auto table = tableOf(t);
     std::vector<const OptionDescription*> those;
@@ -234,6 +241,7 @@ std::string topicText(Topic t, const std::string& name) {
 }
 
 OrderedJson topicJson(Topic t, const std::string& name) {
+    if (t == Topic::Messages) return messageJson(name);
     OrderedJson all = OrderedJson::array();
     if (t == Topic::Hiders)
         for (const auto& h : known::knownHiders())
@@ -249,9 +257,12 @@ OrderedJson topicJson(Topic t, const std::string& name) {
     return all;
 }
 
-std::string topicPage(Topic t) { return t == Topic::Requests ? ri::requestManual() : optionsPage(); }
+std::string topicPage(Topic t) {
+    return t == Topic::Messages ? messagesPage() : t == Topic::Requests ? ri::requestManual() : optionsPage();
+}
 
 std::vector<std::string> topicNames(Topic t) {
+    if (t == Topic::Messages) return messageIds();
     std::vector<std::string> names;
     for (const OptionDescription& d : tableOf(t)) {
         names.emplace_back(d.name);
@@ -265,6 +276,19 @@ std::vector<std::string> topicNames(Topic t) {
         for (const auto* d : display::drivers()) names.insert(names.end(), d->names.begin(), d->names.end());
     if (t == Topic::Requests) names = ri::requestNames();
     return names;
+}
+
+int printTopic(Topic t, const std::string& name, bool json) {
+    const std::string text = topicText(t, name);
+    if (text.empty()) {
+        const std::string near = nearestName(name, topicNames(t));
+        std::fprintf(stderr, "alpenglow: there is nothing of the name \"%s\"%s%s%s\n", printable(name).c_str(),
+                     near.empty() ? "" : "; did you mean \"", near.c_str(), near.empty() ? "" : "\"?");
+        return kDoneWithErrors;
+    }
+    std::fputs((json ? topicJson(t, name).dump(2, ' ', false, OrderedJson::error_handler_t::replace) + "\n" : text).c_str(),
+               stdout);
+    return kDone;
 }
 
 } // namespace alpenglow::cli

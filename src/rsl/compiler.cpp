@@ -11,6 +11,7 @@
 #include "rsl/jit/jit.h"
 #include "rsl/jit/sha256.h"
 #include "rsl/kernelkey.h"
+#include "rsl/messages/messages.h"
 #include "rsl/oslsource.h"
 #include "rsl/passes/looplimit.h"
 #include "rsl/passes/optimize.h"
@@ -50,8 +51,7 @@ ShaderCompiler::~ShaderCompiler() = default;
 namespace {
 /// A file of functions alone is well formed, but it is no shader.
 void sayWithoutShader(const Program* program, const std::string& path, Diagnostics& diagnostics) {
-    if (program && program->shaders.empty())
-        diagnostics.report(Severity::Error, Rie::Syntax, {path, 1, 1}, "there is no shader in this file");
+    if (program && program->shaders.empty()) diagnostics.report(diagnostic(msg::kNoShader, Rie::Syntax, {path, 1, 1}));
 }
 } // namespace
 
@@ -163,12 +163,10 @@ ShaderPtr ShaderCompiler::find(const std::string& name, const std::vector<std::s
             else if (auto f = at(name + e)) compiled = f->path;
         }
         if (!compiled.empty())
-            diagnostics.report(Severity::Error, Rie::NoShader, {compiled, 0, 0},
-                               "\"" + compiled + "\" is a compiled shader of another renderer; its source " + stem +
-                                   ".sl was not found");
+            diagnostics.report(diagnostic(msg::kShaderCompiled(compiled, stem), Rie::NoShader, {compiled, 0, 0}));
         else
-            diagnostics.report(Severity::Error, Rie::NoShader, {}, "shader \"" + name + "\" was not found",
-                               directories.empty() ? "no shader search path is set" : "");
+            diagnostics.report(diagnostic(msg::kShaderNotFound(name), Rie::NoShader, {},
+                                          directories.empty() ? "no shader search path is set" : ""));
     }
     return result;
 }
@@ -252,7 +250,7 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
     bool fromDisk = false;
     try {
         if (const std::string why = state_->cache->refusal(); !why.empty() && !state_->cacheRefused.exchange(true))
-            diagnostics.report(Severity::Warning, Rie::System, {}, why);
+            diagnostics.report(diagnostic(msg::kKernelCache(why), Rie::System, {}));
         if (auto file = state_->cache->load(key)) {
             result = jit::load(*file, true, error, state_->outside);
             fromDisk = result != nullptr;
@@ -273,10 +271,9 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
             if (!error.empty()) {
                 const Place& p = shader->shader().place;
                 const auto& files = shader->program().files;
-                diagnostics.report(
-                    Severity::Error, Rie::Bug,
-                    {p.file >= 0 && size_t(p.file) < files.size() ? files[size_t(p.file)] : shader->path(), p.line, p.column},
-                    "no code could be made for shader \"" + shader->name() + "\": " + error);
+                diagnostics.report(diagnostic(
+                    msg::kNoCodeForShader(shader->name(), error), Rie::Bug,
+                    {p.file >= 0 && size_t(p.file) < files.size() ? files[size_t(p.file)] : shader->path(), p.line, p.column}));
             }
         }
     } catch (const std::bad_alloc&) { // the frame is given up, not rendered without its shader
@@ -287,8 +284,7 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
         promise.set_value(nullptr);
         throw;
     } catch (const std::exception& e) {
-        diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0},
-                           "no code could be made for shader \"" + shader->name() + "\": " + e.what());
+        diagnostics.report(diagnostic(msg::kNoCodeForShader(shader->name(), e.what()), Rie::Bug, {shader->path(), 0, 0}));
         result = nullptr;
     }
     {
@@ -309,7 +305,7 @@ std::string ShaderCompiler::dump(const ShaderPtr& shader, const KernelOptions& o
         jit::KernelFile file;
         std::string error, code;
         if (jit::generate(*k, options, file, error, &code)) text += "\n" + code;
-        else diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0}, error);
+        else diagnostics.report(diagnostic(msg::kNoCodeListing(error), Rie::Bug, {shader->path(), 0, 0}));
     }
     return text;
 }

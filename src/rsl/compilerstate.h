@@ -31,7 +31,7 @@ struct ShaderCompiler::State {
         o.rispecSpecular = settings.rispecSpecular;
         o.lint = settings.lint;
         if (settings.allowExec)
-            o.plugin = [this](const std::string& name, const std::string& beside, std::string& why, std::string& hint) {
+            o.plugin = [this](const std::string& name, const std::string& beside, Raised& why, std::string& hint) {
                 std::vector<std::string> folders{beside};
                 folders.insert(folders.end(), settings.pluginPaths.begin(), settings.pluginPaths.end());
                 return plugins.load(name, folders, why, hint);

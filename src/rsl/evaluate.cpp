@@ -1,5 +1,6 @@
 #include "rsl/evaluate.h"
 #include "rsl/front/protocol.h"
+#include "rsl/messages/messages.h"
 #include "rsl/spilledarrays.h"
 #include <algorithm>
 #include <bit>
@@ -207,7 +208,7 @@ Evaluation evaluate(ShaderCompiler& compiler, const std::string& setup, const st
     if (!kernel) return r;
     std::vector<std::vector<float>> out;
     if (!runAtPoint(*kernel, o.mixed, 1, 0, out, &r.printed, diagnostics, answer)) {
-        diagnostics.report(Severity::Error, Rie::IllState, {"expression", 0, 0}, "rays cannot be traced here: there is no scene");
+        diagnostics.report(diagnostic(msg::kNoScene, Rie::IllState, {"expression", 0, 0}));
         return r;
     }
     r.ok = true;

@@ -1,6 +1,7 @@
 #include "rsl/nonlinear.h"
 #include "rsl/front/ast.h"
 #include "rsl/ir/build.h"
+#include "rsl/messages/messages.h"
 #include "rsl/passes/optimize.h"
 #include <algorithm>
 #include <set>
@@ -44,14 +45,10 @@ std::vector<Diagnostic> nonlinearUses(const Program& program, const Shader& shad
             at.line <= 0 || at.file < 0 || size_t(at.file) >= program.files.size() || program.files[size_t(at.file)][0] == '<';
         if (ours && number >= lobes && lobes > 0) continue;
         if (!seen.insert({n.place.file, n.place.line, n.place.column}).second) continue;
-        Diagnostic d;
-        d.severity = Severity::Warning;
-        d.code = Rie::Syntax;
         const Place& p = ours ? shader.place : at;
+        Diagnostic d = diagnostic(msg::kNotAffine(spoken(n.op), without(n.why, p.line)), Rie::Syntax, {});
         if (p.line > 0 && p.file >= 0 && size_t(p.file) < program.files.size())
             d.place = {program.files[size_t(p.file)], p.line, p.column};
-        d.message = "under path " + spoken(n.op) + " is used non-linearly: " + without(n.why, p.line);
-        d.id = "not-affine";
         d.hint = number < lobes
                      ? "it brings direct light only then; sums and products with what does not depend on light bring all of it"
                      : "the shader waits for its rays then; sums and products with what does not depend on light need no waiting";

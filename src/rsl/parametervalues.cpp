@@ -7,6 +7,7 @@
 #include "rsl/jit/jit.h"
 #include "rsl/jit/sha256.h"
 #include "rsl/kernelkey.h"
+#include "rsl/messages/messages.h"
 #include "rsl/passes/looplimit.h"
 #include "rsl/passes/optimize.h"
 #include <algorithm>
@@ -198,8 +199,7 @@ std::vector<ParameterValue> ShaderCompiler::parameterValues(const std::shared_pt
         const auto code =
             codeOfDefaults(*k, options, keyOfDefaults(shader->digest_, options, read), *state_->cache, state_->outside, error);
         if (!code || code->facts().suspends) {
-            diagnostics.report(Severity::Error, Rie::Bug, {shader->path(), 0, 0},
-                               "the parameters' defaults cannot be computed: " + error);
+            diagnostics.report(diagnostic(msg::kNoDefaults(error), Rie::Bug, {shader->path(), 0, 0}));
             return values;
         }
         runOnce(*code, spaces, numbers.emplace());

@@ -3,6 +3,7 @@
 #include "base/file.h"
 #include "base/limits.h"
 #include "rsl/kernel.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 #include <cctype>
 #include <dlfcn.h>
@@ -76,7 +77,7 @@ std::shared_ptr<Plugin> describe(const AlpenglowRslPlugin& from, const std::stri
         if (why.empty() && !seen.insert(text).second) why = "it stands there twice";
         if (why.empty()) why = unfit(s, e);
         if (!why.empty()) {
-            why = "plug-in \"" + name + "\" is not usable: of the signature \"" + text + "\" in " + path + ", " + why;
+            why = "of the signature \"" + text + "\" in " + path + ", " + why;
             return nullptr;
         }
         addresses[s.symbol] = reinterpret_cast<void*>(e.call);
@@ -101,15 +102,15 @@ std::shared_ptr<Plugin> describe(const AlpenglowRslPlugin& from, const std::stri
 
 } // namespace
 
-std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const std::vector<std::string>& folders,
-                                                  std::string& why, std::string& hint) {
+std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const std::vector<std::string>& folders, Raised& why,
+                                                  std::string& hint) {
     std::optional<FoundFile> found;
     const bool file = name.ends_with(".so");
     if (file) found = findFile(name, folders);
     for (const std::string& n : {name + ".so", "lib" + name + ".so"})
         if (!found && !file && (n[0] == 'l' || !name.empty())) found = findFile(n, folders);
     if (!found) {
-        why = "plug-in \"" + name + "\" was not found";
+        why = msg::kPluginMissing(name);
         hint = "it is looked for as " + (file ? name : name + ".so") +
                " beside the shader and in the folders of the rslplugin search path";
         return nullptr;
@@ -122,24 +123,28 @@ std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const
     void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!library) {
         const char* reason = dlerror();
-        why = "plug-in \"" + name + "\" cannot be loaded: " + (reason ? reason : path);
+        why = msg::kPluginLoad(name, reason ? std::string(reason) : path);
         return nullptr;
     }
     const auto entry = reinterpret_cast<AlpenglowRslEntryPoint>(dlsym(library, ALPENGLOW_RSL_PLUGIN_SYMBOL));
     const AlpenglowRslPlugin* plugin = entry ? entry(&kHost) : nullptr;
     if (!plugin || plugin->abi != ALPENGLOW_RSL_PLUGIN_ABI) {
-        why = "plug-in \"" + name + "\" is not usable: \"" + path + "\" is " +
-              (!plugin ? "no RSL plug-in"
-                       : "an RSL plug-in of version " + std::to_string(plugin->abi) + ", not " +
-                             std::to_string(ALPENGLOW_RSL_PLUGIN_ABI));
+        why = msg::kPluginUnusable(name, "\"" + path + "\" is " +
+                                             (!plugin ? "no RSL plug-in"
+                                                      : "an RSL plug-in of version " + std::to_string(plugin->abi) + ", not " +
+                                                            std::to_string(ALPENGLOW_RSL_PLUGIN_ABI)));
         hint = plugin ? "compile it with the rslplugin.h of this renderer"
                       : "plug-ins of other renderers are of other kinds: see docs/plugins.md";
         dlclose(library);
         return nullptr;
     }
     std::map<std::string, void*> addresses;
-    const auto described = describe(*plugin, name, path, addresses, why);
-    if (!described) return nullptr;
+    std::string wrong;
+    const auto described = describe(*plugin, name, path, addresses, wrong);
+    if (!described) {
+        why = msg::kPluginUnusable(name, wrong);
+        return nullptr;
+    }
     addresses_.insert(addresses.begin(), addresses.end());
     byPath_[path] = described;
     return described;

@@ -13,7 +13,7 @@ public:
     /// NAME as a file, or NAME.so or libNAME.so in one of the folders, loaded. Null with the reason: nothing of that name, no
     /// plug-in, another version of the header, a signature that is empty or does not fit its function. The same file is
     /// loaded once.
-    std::shared_ptr<const Plugin> load(const std::string& name, const std::vector<std::string>& folders, std::string& why,
+    std::shared_ptr<const Plugin> load(const std::string& name, const std::vector<std::string>& folders, Raised& why,
                                        std::string& hint);
     /// The function that a symbol of a loaded plug-in's signature stands for, or null.
     void* address(const std::string& symbol) const;

@@ -4,6 +4,7 @@
 #include "base/pattern.h"
 #include "base/printable.h"
 #include "rsl/front/protocol.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -289,8 +290,8 @@ private:
     Arguments arguments(int lane) const { return Arguments(site_, lanes_, in_, lane); }
     void put(int row, int lane, float v) { out_[size_t(row) * size_t(lanes_) + size_t(lane)] = v; }
     void putString(int lane, const std::string&);
-    void say(const std::string& key, Severity severity, Rie code, std::string message, std::string hint = {}) {
-        diagnostics_.reportOnce(key, {severity, code, place_, std::move(message), std::move(hint), {}});
+    void say(const std::string& key, const Raised& message, Rie code, std::string hint = {}) {
+        diagnostics_.reportOnce(key, diagnostic(message, code, place_, std::move(hint)));
     }
     void cut(std::string&);
 
@@ -317,19 +318,14 @@ private:
 void BasicCall::putString(int lane, const std::string& t) {
     bool full = false;
     put(0, lane, std::bit_cast<float>(internRuntimeString(t, full)));
-    if (full)
-        say("runtime strings", Severity::Error, Rie::Limit,
-            "the strings that shaders make while they run take more than " + std::to_string(limits::kRuntimeStrings) +
-                " bytes; further ones are empty",
-            "a string that differs at every point is kept for each of them: print it, or make it from uniform values");
+    if (full) say("runtime strings", msg::kStringsLimit(limits::kRuntimeStrings), Rie::Limit);
 }
 
 /// A string that is joined with itself in a loop doubles each time.
 void BasicCall::cut(std::string& t) {
     if (t.size() <= limits::kTokenBytes) return;
     t.resize(limits::kTokenBytes);
-    say("stringlimit:" + place_.file + std::to_string(place_.line), Severity::Error, Rie::Limit,
-        site_.op + "(): a string has no more than " + std::to_string(limits::kTokenBytes) + " characters; the rest is cut off");
+    say("stringlimit:" + place_.file + std::to_string(place_.line), msg::kStringLimit(site_.op, limits::kTokenBytes), Rie::Limit);
 }
 
 /// getshaders() with a category that is known now.
@@ -343,15 +339,15 @@ void BasicCall::complaint() {
     Arguments a = arguments(std::countr_zero(mask_));
     std::string text;
     while (a.more(true)) text += a.string();
-    say("complaint:" + place_.file + std::to_string(place_.line) + ":" + std::to_string(place_.column) + text, Severity::Error,
-        Rie::Consistency, text);
+    Diagnostic d{Severity::Error, Rie::Consistency, place_, text, {}, {}};
+    if (!site_.pairStrings.empty()) d.id = site_.pairStrings[0]; // ir/complaint.h
+    diagnostics_.reportOnce("complaint:" + place_.file + std::to_string(place_.line) + ":" + std::to_string(place_.column) + text,
+                            std::move(d));
 }
 
 void BasicCall::arrayLimit() {
-    say("arraylimit:" + place_.file + std::to_string(place_.line), Severity::Error, Rie::Limit,
-        "an array cannot grow beyond " + std::to_string(mask_ ? int(in_[std::countr_zero(mask_)]) : 0) +
-            " elements; what follows is left out",
-        "resize() or reserve() it with the number it needs");
+    const int most = mask_ ? int(in_[std::countr_zero(mask_)]) : 0;
+    say("arraylimit:" + place_.file + std::to_string(place_.line), msg::kArrayLimit(most), Rie::Limit);
 }
 
 void BasicCall::format() {
@@ -387,7 +383,7 @@ void BasicCall::match() {
         const std::string pattern = a.string(), subject = a.string();
         std::string error;
         put(0, l, matchText(pattern, subject, &error) ? 1.0f : 0.0f);
-        if (!error.empty()) say("match:" + pattern, Severity::Error, Rie::Syntax, "match(): \"" + pattern + "\": " + error);
+        if (!error.empty()) say("match:" + pattern, msg::kMatchPattern(pattern, error), Rie::Syntax);
     });
 }
 
@@ -403,8 +399,7 @@ void BasicCall::colourTransform() {
         const std::string from = lower(a.string()), to = lower(a.string());
         for (const std::string& t : {from, to})
             if (!t.empty() && !known(t))
-                say("ctransform:" + t, Severity::Warning, Rie::NoError,
-                    "there is no colour space \"" + t + "\"; the colour stays as it is", "there are: rgb, hsv, hsl, yiq, xyz");
+                say("ctransform:" + t, msg::kUnknownColourSpace(t), Rie::NoError, "there are: rgb, hsv, hsl, yiq, xyz");
         FormatValue v = a.value();
         float c[3] = {v.numbers[0], v.numbers[1], v.numbers[2]}, r[3];
         if (from != to && known(from) && known(to)) {

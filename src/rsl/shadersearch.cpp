@@ -3,6 +3,7 @@
 #include "base/folder.h"
 #include "base/limits.h"
 #include "base/realpath.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 #include <array>
 #include <filesystem>
@@ -59,10 +60,7 @@ bool namedAsSource(const std::string& path) {
 bool leadsToNoSource(const std::string& path, Diagnostics& d) {
     const std::string real = followedPath(path);
     if (namedAsSource(real)) return false;
-    d.report(Severity::Error, Rie::NoShader, {},
-             "shader \"" + path + "\" is not read: it leads by a link to \"" + real +
-                 "\", which is not named as a shader's source",
-             "the name of the target must end in .sl");
+    d.report(diagnostic(msg::kShaderLink(path, real), Rie::NoShader, {}));
     return true;
 }
 

@@ -1,4 +1,5 @@
 #include "rsl/spilledarrays.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 
 namespace alpenglow::rsl {
@@ -53,14 +54,8 @@ bool SpilledArrays::answer(const ir::Site& s, int32_t first, uint64_t mask, int3
     if (!full) return true;
     const std::string file =
         files && s.place.file >= 0 && size_t(s.place.file) < files->size() ? (*files)[size_t(s.place.file)] : "";
-    Diagnostic d;
-    d.severity = Severity::Error;
-    d.code = Rie::Limit;
-    d.place = {file, s.place.line, s.place.column};
-    d.message = "the arrays of the points that are shaded together may grow to " + std::to_string(most_ >> 20) +
-                " MB, and each of them to " + std::to_string(1 << 24) + " elements; what follows is left out";
-    d.hint = "keep what the next step needs only: a sum, the nearest, the largest";
-    diagnostics.reportOnce("spilled arrays:" + file + std::to_string(s.place.line), d);
+    diagnostics.reportOnce("spilled arrays:" + file + std::to_string(s.place.line),
+                           diagnostic(msg::kArraysLimit(most_ >> 20, 1 << 24), Rie::Limit, {file, s.place.line, s.place.column}));
     return true;
 }
 

@@ -1,5 +1,6 @@
 // info: lists and pages that are made from the tables of requests, options, attributes, hiders, displays, and of the shaders.
 #include "command_folder.h"
+#include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -25,6 +26,7 @@ TEST_F(Info, PagesAreUpToDate) {
     const char* how = "make it again: ninja shadeops_manual";
     EXPECT_TRUE(text(ALPENGLOW_SOURCE_DIR "/docs/rib.md") == run("info --requests --markdown")) << how;
     EXPECT_TRUE(text(ALPENGLOW_SOURCE_DIR "/docs/options.md") == run("info --options --markdown")) << how;
+    EXPECT_TRUE(text(ALPENGLOW_SOURCE_DIR "/docs/messages.md") == run("info --messages --markdown")) << how;
     EXPECT_EQ(status, 0);
 }
 
@@ -46,6 +48,31 @@ TEST_F(Info, OptionsByNameCategoryAndBoth) {
     EXPECT_EQ(one[0]["type"], "string");
     EXPECT_EQ(one[0]["effect"], "used");
     EXPECT_EQ(one[0]["default"], "\"prman\"");
+}
+
+TEST_F(Info, MessagesAreExplained) {
+    const std::string one = run("compile --explain pp-macro-arguments");
+    EXPECT_EQ(status, 0);
+    for (const char* part : {"error: macro '...' takes ... arguments, not ...", "as many arguments as its #define has parameters",
+                             "    surface s() { Ci = product(1); }"})
+        EXPECT_NE(one.find(part), std::string::npos) << part << "\n" << one;
+    EXPECT_EQ(run("info --messages pp-macro-arguments"), one);
+    EXPECT_NE(run("compile --explain unused-parameter").find("`compile -W` and editors say so."), std::string::npos);
+    EXPECT_NE(run("compile --explain too-deep").find("It has no example: it needs"), std::string::npos);
+    EXPECT_EQ(run("compile --explain no-such-functon"), "");
+    EXPECT_EQ(status, 1);
+    EXPECT_NE(errors().find("did you mean \"no-such-function\"?"), std::string::npos) << errors();
+    const std::string all = run("compile --explain");
+    EXPECT_EQ(status, 0);
+    EXPECT_NE(all.find("\nmember-dot "), std::string::npos);
+    EXPECT_GT(std::count(all.begin(), all.end(), '\n'), 170);
+    const Json json = Json::parse(run("compile --json --explain member-dot"));
+    ASSERT_EQ(json.size(), 1u);
+    EXPECT_EQ(json[0]["texts"][0]["severity"], "error");
+    EXPECT_EQ(json[0]["texts"][0]["hint"], "a member of a structure is read by '->'");
+    EXPECT_NE(json[0]["example"].get<std::string>().find("r.origin"), std::string::npos);
+    run("compile");
+    EXPECT_EQ(status, 2); // a file is wanted
 }
 
 TEST_F(Info, HidersDisplaysAndRequests) {

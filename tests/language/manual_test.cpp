@@ -4,7 +4,6 @@
 // "// gives NAME = NUMBERS" behind it what an output holds.
 #include "points.h"
 #include "rsl/compiler.h"
-#include "rsl/front/messages.h"
 #include <fstream>
 #include <gtest/gtest.h>
 #include <set>
@@ -65,10 +64,8 @@ TEST(Manual, EveryProgramDoesWhatThePageSays) {
         Diagnostics d;
         const auto shader = compiler.loadText(p.text, "t.sl", d);
         std::multiset<std::string> said;
-        for (Diagnostic m : d.all()) {
-            complete(m);
+        for (const Diagnostic& m : d.all())
             said.insert(std::to_string(m.place.line) + (m.severity == Severity::Warning ? " warning " : " error ") + m.id);
-        }
         EXPECT_EQ(said, p.expected);
         EXPECT_EQ(shader != nullptr, d.errors() == 0);
         if (!shader || d.errors() > 0) continue;

@@ -5,7 +5,6 @@
 #include "rsl/compiler.h"
 #include "rsl/evaluate.h"
 #include "rsl/front/ast.h"
-#include "rsl/front/messages.h"
 #include "rsl/ir/build.h"
 #include "rsl/services_basic.h"
 #include <filesystem>
@@ -266,10 +265,7 @@ TEST(ShaderAttacks, TooManyLightBlocksAndOperationsHaveIds) {
     ASSERT_TRUE(p) << all(d);
     EXPECT_FALSE(buildKernel(*p, *p->shaders[0], {}, d));
     ASSERT_EQ(d.errors(), 1) << all(d);
-    EXPECT_STREQ(messageId(d.all().back().message), "light-blocks") << d.all().back().message;
-    EXPECT_STREQ(messageId("the shader is too large once its functions are inlined: more than 400000 operations"),
-                 "shader-too-large");
-    EXPECT_STREQ(messageId("the local arrays of \"s\" need 2 bytes a point; the limit is 1"), "shader-memory");
+    EXPECT_EQ(d.all().back().id, "light-blocks") << d.all().back().message;
 }
 
 } // namespace shader_attacks_test

@@ -28,10 +28,7 @@ void hashComments(SourceSet& sources, Preprocessed& p) {
             kept.push_back(p.tokens[i++]);
             continue;
         }
-        sources.warning(t.place,
-                        std::string(two ? "'##' begins no directive" : "'#' in the middle of a line begins no directive") +
-                            "; the rest of the line is taken as a comment",
-                        "a comment begins with //");
+        sources.report(t.place, two ? Raised(msg::kTwoHashComment) : Raised(msg::kHashComment));
         const Place line = t.place;
         for (; i < p.tokens.size() && p.tokens[i].kind != Tok::End && p.tokens[i].place.file == line.file &&
                p.tokens[i].place.line == line.line;
@@ -61,9 +58,7 @@ void readBorrowedWords(SourceSet& sources, Preprocessed& p) {
             const bool begins = i == 0 || isOneOf(tokens[i - 1], {";", "{", "}", "(", ",", "uniform", "varying", "output",
                                                                   "public", "private", "constant", "const", "extern"});
             if (!begins) continue;
-            if (said.insert(t.text).second)
-                sources.warning(t.place,
-                                "there is no type '" + std::string(t.text) + "'; float is taken, numbers are not rounded");
+            if (said.insert(t.text).second) sources.report(t.place, msg::kBorrowedType(t.text));
             t.text = "float";
         }
     }

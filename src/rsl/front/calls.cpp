@@ -196,7 +196,7 @@ void Checker::inferCall(Expr& e, Info& info) {
         std::sort(names.begin(), names.end());
         for (const Shadeop& s : shadeops())
             if (s.name.rfind("__", 0) != 0) names.push_back(s.name);
-        sources_.error(e.place, "there is no function '" + e.text + "'", unknownFunctionHint(e.text, names));
+        sources_.report(e.place, msg::kNoSuchFunction(e.text), unknownFunctionHint(e.text, names));
         return;
     }
     bestByArguments(info.choices);
@@ -329,13 +329,12 @@ void Checker::resolveCall(ExprPtr& pointer, Type result) {
     e.kind = ExprKind::FunctionCall;
     if (choice.nested) {
         e.function = choice.function;
-        if (checking_.count(choice.function))
-            sources_.error(e.place, "function '" + e.text + "' calls itself; recursion is not allowed");
+        if (checking_.count(choice.function)) sources_.report(e.place, msg::kRecursion(e.text));
     } else {
         e.function = instance(*choice.function, *choice.unit, {}, e.place);
     }
     if (e.function && callHeight_[e.function] >= limits::kCallDepth) { // methods and functions inside of functions, too
-        sources_.error(e.place, "calls of functions are nested more than " + std::to_string(limits::kCallDepth) + " deep");
+        sources_.report(e.place, msg::kCallsTooDeep(limits::kCallDepth));
         e.function = nullptr;
     }
     if (e.function && function_) callHeight_[function_] = std::max(callHeight_[function_], callHeight_[e.function] + 1);

@@ -51,17 +51,13 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         const std::string name = written ? ChannelName::parse(e.args[0]->text).name : kAnyChannel + toString(type);
         const bool parameter = written && shaderParameters_.count(name) > 0;
         if (type.array < 0 && !parameter) {
-            sources_.warning(e.args[1]->place,
-                             "an array of open length is no output: displays would not know how many numbers it has",
-                             "copy it to an array of fixed length, or give it to an output parameter");
+            sources_.report(e.args[1]->place, msg::kChannelOpen);
         } else {
             const auto [i, fresh] = program_.channels.emplace(name, type);
             const Type first = i->second;
             if (!fresh && !parameter &&
                 (componentCount(first.base) != componentCount(type.base) || (first.array != 0) != (type.array != 0)))
-                sources_.warning(e.args[1]->place, "output '" + name + "' is a " + toString(first) +
-                                                       " in an earlier call, and a " + toString(type) +
-                                                       " here; only the first is shown");
+                sources_.report(e.args[1]->place, msg::kChannelTypes(name, toString(first), toString(type)));
         }
     }
     if (op.name == "getvar" && e.args[1]->kind == ExprKind::String)
@@ -74,22 +70,22 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
         const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));
         if (s && !open && s->type.base != Base::Void)
-            sources_.error(e.args[0]->place, "the length of '" + s->name + "' is fixed",
-                           s->origin == Symbol::Origin::Local
-                               ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
-                               : "only local arrays and parameters of functions can change theirs");
+            sources_.report(e.args[0]->place, msg::kFixedLength(s->name),
+                            s->origin == Symbol::Origin::Local
+                                ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
+                                : "only local arrays and parameters of functions can change theirs");
     }
     if (op.name == "push" && e.args.size() == 2 && e.args[0]->symbol && e.args[1]->type.base == Base::String) {
         const Handle array = e.args[0]->symbol->handle ? Handle::Shader : Handle::Text;
         if (const Info& value = infos_.at(e.args[1].get()); !alike(array, value.handle))
-            sources_.error(e.args[1]->place, "expected a " + named({Base::String, 0}, array) + ", not " + describe(*e.args[1]));
+            sources_.report(e.args[1]->place, msg::kTypeMismatch(named({Base::String, 0}, array), describe(*e.args[1])));
     }
     if (kind_ && !(op.contexts & contextOf(*kind_)) && !(function_ && function_->anywhere)) {
         std::string where;
         for (int k = 0; k < 6; ++k)
             if (op.contexts & contextOf(ShaderKind(k)))
                 where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
-        sources_.error(e.place, "'" + op.name + "' cannot be used in a " + toString(*kind_) + " shader", "it can in: " + where);
+        sources_.report(e.place, msg::kWrongShaderKind(op.name, toString(*kind_)), "it can in: " + where);
         return; // its text would be wrong here line by line
     }
     if (uniformResult(e, choice)) {
@@ -107,8 +103,8 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     const bool rays =
         op.name == "shadow" && !e.args.empty() && e.args[0]->kind == ExprKind::String && e.args[0]->text == "raytrace";
     if (op.lowering == Lowering::Unavailable && !rays && reportedUnavailable_.insert(&op).second)
-        sources_.warning(e.place, "'" + op.name + "' is not yet available; " +
-                                      (e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
+        sources_.report(
+            e.place, msg::kShadeopNotAvailable(op.name, e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
     if (op.lowering != Lowering::Rsl) return;
     std::pair<std::string, std::string> rename;
     for (const NamedArg& p : e.pairs) {
@@ -117,11 +113,11 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
             std::string filter = p.value->text;
             filter.erase(std::remove(filter.begin(), filter.end(), '-'), filter.end());
             if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
-            else sources_.warning(p.place, "there is no filter \"" + p.value->text + "\"; catmull-rom is used");
+            else sources_.report(p.place, msg::kNoSuchStepFilter(p.value->text));
         } else if (optionalInText(op) > 0) {
         } else if (op.name != "filterstep" && std::any_of(op.optional.begin(), op.optional.end(),
                                                           [&](const OptionalParameter& o) { return o.name == p.name; })) {
-            sources_.warning(p.place, "\"" + p.name + "\" of '" + op.name + "' is not yet available and ignored");
+            sources_.report(p.place, msg::kParameterNotAvailable(p.name, op.name));
         }
     }
     const Unit& unit = rslUnit(op);
@@ -143,7 +139,7 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
         }
         return;
     }
-    sources_.error(e.place, "the text of '" + op.name + "' has no function for " + choice.signature->text);
+    sources_.report(e.place, msg::kNoText(op.name, choice.signature->text));
 }
 
 /// The tokens become the last arguments, in the order of the descriptor.
@@ -177,9 +173,7 @@ void Checker::madeName(Expr& e, size_t at, const Shadeop& op) {
     // A text in RSL takes its parameters here, and its names must be literals.
     const bool ignored = op.lowering == Lowering::Unavailable || op.lowering == Lowering::Rsl;
     if (op.lowering == Lowering::Rsl)
-        sources_.warning(name.place,
-                         "the name of a parameter of '" + op.name + "' must be written as a literal; this one is ignored",
-                         "'" + op.name + "' is a function in RSL");
+        sources_.report(name.place, msg::kMadeName(op.name), "'" + op.name + "' is a function in RSL");
     ExprPtr& value = e.args[at + 1];
     const bool variable = isVariable(*value) && !infos_.at(value.get()).any;
     if (variable && !ignored) resolveVariable(value);
@@ -224,8 +218,8 @@ void Checker::resolvePairs(Expr& e, size_t positional, const Shadeop* op) {
             const bool channels = op->name == "bake3d" || op->name == "texture3d";
             const std::string near = nearestName(pair.name, names);
             if (pair.name.find(':') == std::string::npos && !channels && op->lowering != Lowering::Unavailable)
-                sources_.warning(pair.place, "'" + op->name + "' has no parameter \"" + pair.name + "\"; it is ignored",
-                                 near.empty() ? "" : "did you mean \"" + near + "\"?");
+                sources_.report(pair.place, msg::kNoSuchParameter(op->name, pair.name),
+                                near.empty() ? "" : "did you mean \"" + near + "\"?");
             pair.output = op->name == "texture3d" && isVariable(*value); // what is read from the file goes there
             if (pair.output) {
                 resolveVariable(value);
@@ -238,8 +232,7 @@ void Checker::resolvePairs(Expr& e, size_t positional, const Shadeop* op) {
             const int cost = argumentCost(*value, {optional->type, true, Handle::Either}, false);
             const bool array = info.array.array && info.array.base == optional->type.base;
             if (cost >= kNever && !array) {
-                sources_.error(value->place, "\"" + pair.name + "\" gives a " + toString(optional->type) +
-                                                 ": it needs a variable of that type");
+                sources_.report(value->place, msg::kOutputPair(pair.name, toString(optional->type)));
             } else {
                 resolveVariable(value);
                 written(*value);

@@ -101,12 +101,12 @@ void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::
     std::string hint = "it can be called as";
     for (size_t i = 0; i < candidates.size() && i < 6; ++i) hint += (i ? "; " : " ") + candidates[i];
     if (candidates.size() > 6) hint += "; and " + std::to_string(candidates.size() - 6) + " more";
-    const std::string what = outputsOnly     ? "an output argument of '" + e.text + "' must be a variable of the same type"
-                             : given.empty() ? "'" + e.text + "' cannot be called without arguments"
-                                             : "'" + e.text + "' cannot be called with (" + given + ")";
+    const Raised what = outputsOnly     ? msg::kOutputArgument(e.text)
+                        : given.empty() ? msg::kNoMatchingEmptyCall(e.text)
+                                        : msg::kNoMatchingCall(e.text, given);
     for (const auto& p : program_.plugins)
         if (p->find(e.text)) notes.push_back("'" + e.text + "' is a function of plug-in \"" + p->name + "\": " + p->path);
-    sources_.error(e.place, what, hint, std::move(notes));
+    sources_.report(e.place, what, hint, std::move(notes));
 }
 
 } // namespace front

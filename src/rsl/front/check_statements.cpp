@@ -1,3 +1,4 @@
+#include "base/printable.h"
 #include "rsl/front/checker.h"
 #include "rsl/front/clone.h"
 #include "rsl/front/visit.h"
@@ -98,8 +99,7 @@ void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method)
         return; // what a handle gives is of the class that is wanted
     if (Known known{unclassed_}; sameForAll(value, known)) return;
-    sources_.warning(value.place,
-                     "a varying value is given to the uniform variable '" + s.name + "'; each shaded point keeps its own");
+    sources_.report(value.place, msg::kVaryingToUniform(s.name));
 }
 
 /// `T x = value`, where x may be an array whose length comes from the value.
@@ -190,7 +190,7 @@ void Checker::check(StmtPtr& s) {
         if (s->value->kind != ExprKind::Assign && s->value->kind != ExprKind::ShadeopCall &&
             s->value->kind != ExprKind::FunctionCall && s->value->kind != ExprKind::Method && s->value->kind != ExprKind::Cast &&
             !(s->value->kind == ExprKind::Variable && !s->value->symbol) && s->value->type.base != Base::Void)
-            sources_.warning(s->place, "this expression has no effect");
+            sources_.report(s->place, msg::kNoEffect);
         break;
     case StmtKind::If:
         condition(s->condition);
@@ -210,25 +210,24 @@ void Checker::check(StmtPtr& s) {
     case StmtKind::Break:
     case StmtKind::Continue: {
         const char* word = s->kind == StmtKind::Break ? "break" : "continue";
-        if (loops_ == 0) sources_.error(s->place, std::string("'") + word + "' outside a loop");
+        if (loops_ == 0) sources_.report(s->place, msg::kOutsideLoop(word));
         else if (s->levels > loops_)
-            sources_.error(s->place, std::string("'") + word + " " + std::to_string(s->levels) + "' inside " +
-                                         std::to_string(loops_) + (loops_ == 1 ? " loop" : " loops"));
+            sources_.report(s->place, msg::kOutsideLoops(word, s->levels, counted(size_t(loops_), "loop")));
         break;
     }
     case StmtKind::Return:
         if (!function_) {
             if (s->value) {
                 whole(s->value);
-                sources_.error(s->place, "a shader returns no value");
+                sources_.report(s->place, msg::kShaderReturnValue);
             }
         } else if (function_->result.base == Base::Void) {
             if (s->value) {
                 whole(s->value);
-                sources_.error(s->value->place, "function '" + function_->name + "' is void and returns no value");
+                sources_.report(s->value->place, msg::kVoidReturnValue(function_->name));
             }
         } else if (!s->value) {
-            sources_.error(s->place, "function '" + function_->name + "' must return a " + toString(function_->result));
+            sources_.report(s->place, msg::kReturnEmpty(function_->name, toString(function_->result)));
         } else {
             valueOf(s->value, function_->result, function_->handle);
         }
@@ -260,8 +259,7 @@ void Checker::statementPair(Stmt& s, ExprPtr token, ExprPtr value) {
     } else {
         pair.name = token->text;
         pair.output = pair.name.find(':') != std::string::npos && pair.name.rfind("send:", 0) != 0;
-        if (pair.output && !variable && !unknown)
-            sources_.error(pair.value->place, "the value of \"" + pair.name + "\" must be a variable");
+        if (pair.output && !variable && !unknown) sources_.report(pair.value->place, msg::kOutputPairValue(pair.name));
     }
     if (pair.output && variable) {
         resolveVariable(pair.value);
@@ -281,7 +279,7 @@ void Checker::checkLight(Stmt& s) {
     const auto [word, contexts] = kRules.at(s.kind);
     const std::string name = word;
     const bool foreign = kind_ && !(contexts & contextOf(*kind_));
-    if (foreign) sources_.error(s.place, "'" + name + "' cannot be used in a " + toString(*kind_) + " shader");
+    if (foreign) sources_.report(s.place, msg::kWrongShaderKind(name, toString(*kind_)));
     std::vector<ExprPtr> given = std::move(s.exprs);
     s.exprs.clear();
     size_t next = 0;
@@ -304,13 +302,13 @@ void Checker::checkLight(Stmt& s) {
         resolveTypes(given[0], {Base::String, 0});
         s.category = std::move(given[next++]);
     } else if (s.kind == StmtKind::Gather) {
-        sources_.error(s.place, "gather begins with a category, a string");
+        sources_.report(s.place, msg::kGatherCategory);
     }
     size_t positions = 0;
     while (next + positions < given.size() && !isString(next + positions)) ++positions;
     const bool pairs = s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather;
     const auto wrong = [&](const char* forms) {
-        sources_.error(s.place, "wrong arguments of '" + name + "'", forms);
+        sources_.report(s.place, msg::kLightArguments(name), forms);
         fits = false; // one message for all of them
     };
     const bool rest = !pairs && next + positions < given.size();
@@ -340,7 +338,7 @@ void Checker::checkLight(Stmt& s) {
         ExprPtr token = std::move(given[next++]);
         if (!token) continue;
         if ((token->kind != ExprKind::String && !isText(*token)) || next == given.size()) {
-            if (!infos_.at(token.get()).any) sources_.error(token->place, "expected a pair: \"name\", value");
+            if (!infos_.at(token.get()).any) sources_.report(token->place, msg::kExpectedPair);
             break;
         }
         if (!given[next]) break;

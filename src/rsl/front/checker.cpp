@@ -34,7 +34,7 @@ void Checker::checkShader(Shader& s) {
         if (symbol.storage == Storage::Unspecified) symbol.storage = Storage::Uniform;
         if (p.defaultValue) initialise(symbol, p.defaultValue); // earlier parameters are visible
         if (!shaderParameters_.emplace(symbol.name, &symbol).second)
-            sources_.error(symbol.place, "there are two parameters called '" + symbol.name + "'");
+            sources_.report(symbol.place, msg::kTwoParameters(symbol.name));
         scopes_[0].names[symbol.name] = &symbol;
     }
     check(s.body);
@@ -67,9 +67,7 @@ Function* Checker::instance(Function& f, const Unit& unit, const std::pair<std::
     const auto key = std::make_pair(static_cast<const Function*>(&f), rename.second);
     if (const auto found = instances_.find(key); found != instances_.end()) return found->second;
     if (checking_.count(&f) || instanceDepth_ >= limits::kCallDepth) {
-        sources_.error(call, checking_.count(&f)
-                                 ? "function '" + f.name + "' calls itself; recursion is not allowed"
-                                 : "calls of functions are nested more than " + std::to_string(limits::kCallDepth) + " deep");
+        sources_.report(call, checking_.count(&f) ? msg::kRecursion(f.name) : msg::kCallsTooDeep(limits::kCallDepth));
         return nullptr;
     }
     checking_.insert(&f);
@@ -109,13 +107,11 @@ void Checker::checkBody(Function& f) {
             initialise(*p, f.defaults[n]);
             p->type.array = length;
         }
-        if (!scopes_.back().names.emplace(p->name, p).second)
-            sources_.error(p->place, "there are two parameters called '" + p->name + "'");
+        if (!scopes_.back().names.emplace(p->name, p).second) sources_.report(p->place, msg::kTwoParameters(p->name));
     }
     check(f.body);
     scopes_.pop_back();
-    if (f.result.base != Base::Void && !endsInReturn(*f.body))
-        sources_.warning(f.place, "function '" + f.name + "' can end without returning a value; it is zero then");
+    if (f.result.base != Base::Void && !endsInReturn(*f.body)) sources_.report(f.place, msg::kReturnMissing(f.name));
     if (varyingFunctions_.count(&f) && outer) varyingFunctions_.insert(outer);
     function_ = outer;
     loops_ = loops;
@@ -187,10 +183,9 @@ void Checker::bindExtern(Symbol& declared) {
     }
     if (!outer) {
         std::string near = nearestName(declared.name, visibleNames());
-        sources_.error(declared.place,
-                       "there is no '" + declared.name + "' outside for this extern declaration" +
-                           (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : ""),
-                       near.empty() ? "" : "did you mean '" + near + "'?");
+        sources_.report(declared.place,
+                        kind_ ? msg::kNoSuchExternIn(declared.name, toString(*kind_)) : msg::kNoSuchExtern(declared.name),
+                        near.empty() ? "" : "did you mean '" + near + "'?");
         declared.type = {Base::Void, 0}; // poison
         outer = &declared;
     } else if (outer->type.base != Base::Void) {
@@ -199,9 +194,9 @@ void Checker::bindExtern(Symbol& declared) {
         const bool same = outer->handle == declared.handle && (a.base == b.base || (a.isPointLike() && b.isPointLike())) &&
                           (a.array == b.array || b.array == -1);
         if (!same) {
-            sources_.error(declared.place, "'" + declared.name + "' is " +
-                                               named(a, outer->handle ? Handle::Shader : Handle::Text) + " outside, not " +
-                                               named(b, declared.handle ? Handle::Shader : Handle::Text));
+            sources_.report(declared.place,
+                            msg::kExternType(declared.name, named(a, outer->handle ? Handle::Shader : Handle::Text),
+                                             named(b, declared.handle ? Handle::Shader : Handle::Text)));
         }
     }
     scopes_.back().names[declared.name] = outer;
@@ -212,8 +207,8 @@ void Checker::declareLocal(Symbol& s) {
     auto [at, fresh] = scopes_.back().names.emplace(s.name, &s);
     if (fresh) return;
     if (at->second->type != s.type && at->second->type.base != Base::Void && s.type.base != Base::Void)
-        sources_.error(s.place, "'" + s.name + "' was declared in this block already, as " + toString(at->second->type));
-    else sources_.warning(s.place, "'" + s.name + "' was declared in this block already; this is a new variable");
+        sources_.report(s.place, msg::kRedeclared(s.name, toString(at->second->type)));
+    else sources_.report(s.place, msg::kRedeclaredNew(s.name));
     at->second = &s;
 }
 
@@ -232,8 +227,8 @@ std::vector<std::string> Checker::visibleNames() {
 /// specification gives to other kinds of shaders but has a meaning here too. Null when it is nothing of that.
 Symbol* Checker::tolerated(Expr& e) {
     if (const auto p = shaderParameters_.find(e.text); p != shaderParameters_.end() && p->second->type.base != Base::Void) {
-        sources_.warning(e.place, "'" + e.text + "' is a parameter of the shader, used without being declared extern",
-                         "declare 'extern " + toString(p->second->type) + " " + e.text + ";'");
+        sources_.report(e.place, msg::kMissingExtern(e.text),
+                        "declare 'extern " + toString(p->second->type) + " " + e.text + ";'");
         return p->second;
     }
     const bool onSurface = kind_ && (*kind_ == ShaderKind::Surface || *kind_ == ShaderKind::Displacement);
@@ -243,7 +238,7 @@ Symbol* Checker::tolerated(Expr& e) {
             return f->name == "light";
         }; // a class that is a light, too: its methods speak so
         if (std::any_of(shader_->nested.begin(), shader_->nested.end(), isLight)) return global(own);
-        sources_.warning(e.place, "'" + e.text + "' belongs to light shaders; '" + own + "' is used");
+        sources_.report(e.place, msg::kLightVariable(e.text, own));
         return global(own);
     }
     return nullptr;
@@ -255,12 +250,10 @@ void Checker::unknownVariable(Expr& e) {
         if (const std::string near = nearestName(e.text, visibleNames()); !near.empty()) {
             hint = "did you mean '" + near + "'?";
         }
-        std::string where;
-        if (kind_)
-            for (int k = 0; k < 6 && where.empty(); ++k)
-                for (const auto& g : globalVariables(ShaderKind(k)))
-                    if (e.text == g.name) where = std::string(" in a ") + toString(*kind_) + " shader";
-        sources_.error(e.place, "'" + e.text + "' is not declared" + where, hint);
+        bool elsewhere = false; // a variable of other kinds of shaders
+        for (int k = 0; k < 6 && kind_; ++k)
+            for (const auto& g : globalVariables(ShaderKind(k))) elsewhere |= e.text == g.name;
+        sources_.report(e.place, elsewhere ? msg::kUndeclaredIn(e.text, toString(*kind_)) : msg::kUndeclared(e.text), hint);
     }
     // From now on the name is known as wrong, and silent.
     auto s = std::make_unique<Symbol>();

@@ -1,5 +1,6 @@
 #include "rsl/front/classes.h"
 #include "base/limits.h"
+#include "base/printable.h"
 #include "rsl/front/clone.h"
 #include "rsl/front/nodes.h"
 #include <algorithm>
@@ -79,7 +80,7 @@ public:
     void run() {
         for (const auto& f : class_.shader->nested)
             if (f->result.base != Base::Void && isEntry(f->name) && !isHalf(f->name))
-                sources_.error(f->place, "method '" + f->name + "' returns no value");
+                sources_.report(f->place, msg::kMethodResult(f->name));
         if (recursive()) return;
         std::vector<ShaderKind> kinds;
         for (const Entry& e : entries())
@@ -87,8 +88,7 @@ public:
         if (names_.count("surface"))
             for (const char* part : {"prelighting", "lighting", "postlighting"})
                 if (names_.count(part) && !calls_["surface"].count(part) && !calls_["light"].count(part))
-                    sources_.warning(method(part)->place,
-                                     std::string("method '") + part + "' is not run where there is a method 'surface'");
+                    sources_.report(method(part)->place, msg::kMethodNotRun(part));
         if (kinds.empty()) kinds.push_back(ShaderKind::Surface); // a shader for other shaders
         for (ShaderKind k : kinds) unit_.shaders.push_back(shader(k, k == kinds[0]));
     }
@@ -117,7 +117,7 @@ private:
         const std::function<void(const std::string&, int)> visit = [&](const std::string& name, int depth) {
             if (found || !names_.count(name) || state[name] == 2) return;
             if (state[name] == 1) {
-                if (!found) sources_.error(method(name)->place, "method '" + name + "' calls itself; recursion is not allowed");
+                if (!found) sources_.report(method(name)->place, msg::kMethodRecursion(name));
                 found = true;
                 return;
             }
@@ -128,8 +128,7 @@ private:
                 tall = std::max(tall, depth < limits::kCallDepth ? height[c] + 1 : limits::kCallDepth + 1);
             }
             if (!found && tall > limits::kCallDepth) {
-                sources_.error(method(name)->place,
-                               "calls of methods are nested more than " + std::to_string(limits::kCallDepth) + " deep");
+                sources_.report(method(name)->place, msg::kMethodsTooDeep(limits::kCallDepth));
                 found = true;
             }
             state[name] = 2;
@@ -210,16 +209,13 @@ private:
             const Symbol& p = *f.parameters[i];
             const bool irradiance = isHalf(name) && i == 2; // Ii, which the renderer does not want
             if (!optional(i) && name != "light" && !irradiance) {
-                sources_.error(f.place, "method '" + name + "' has at most " + std::to_string(variables.size()) +
-                                            (variables.size() == 1 ? " parameter" : " parameters"));
+                sources_.report(f.place, msg::kMethodParameters(name, counted(variables.size(), "parameter")));
                 return make(StmtKind::Block, f.place);
             }
             if (!optional(i) && !irradiance && locals->declarators.empty())
-                sources_.warning(p.place, "parameter '" + p.name + "' has no default value; it is " +
-                                              (p.type.base != Base::String ? "zero"
-                                               : p.handle                  ? "null"
-                                                                           : "empty") +
-                                              " unless set");
+                sources_.report(p.place, msg::kNoDefault(p.name, p.type.base != Base::String ? "zero"
+                                                                 : p.handle                  ? "null"
+                                                                                             : "empty"));
             auto symbol = std::make_unique<Symbol>(p);
             symbol->name = "(" + name + ")->" + p.name;
             symbol->origin = Symbol::Origin::Local;
@@ -252,9 +248,7 @@ private:
                     if (p->name == "L" || p->name == "Cl" || p->name == "Ol") continue;
                     others.push_back(p);
                     values.push_back(i < f->defaults.size() ? std::move(f->defaults[i]) : nullptr);
-                    if (!values.back() && !std::exchange(told, true))
-                        sources_.error(p->place,
-                                       "the parameters of a method 'light' with illuminate() or solar() are L, Cl and Ol");
+                    if (!values.back() && !std::exchange(told, true)) sources_.report(p->place, msg::kLightMethodParameters);
                 }
                 f->parameters.clear();
                 f->defaults.clear();

@@ -34,7 +34,7 @@ private:
         std::string hint = near.empty() ? "there are:" : "did you mean \"" + near + "\"?";
         for (const std::string& s : spaces())
             if (near.empty()) hint += (hint.back() == ':' ? " " : ", ") + s;
-        sources_.warning(e.place, "there is no colour space \"" + e.text + "\"; the colour stays as it is", hint);
+        sources_.report(e.place, msg::kUnknownColourSpace(e.text), hint);
     }
 
     SourceSet& sources_;

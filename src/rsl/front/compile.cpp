@@ -7,6 +7,7 @@
 #include "rsl/front/inspect.h"
 #include "rsl/front/lint.h"
 #include "rsl/front/prelude.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 
 namespace alpenglow::rsl {
@@ -20,20 +21,16 @@ void findPlugins(Unit& unit, const FrontOptions& options, const std::string& fil
     const size_t slash = file.find_last_of('/');
     const std::string beside = slash == std::string::npos ? "." : file.substr(0, slash);
     for (const PluginUse& use : unit.plugins) {
-        std::string why, hint;
+        Raised why = msg::kPluginRefused(use.name);
+        std::string hint;
         std::shared_ptr<const Plugin> plugin;
-        if (options.plugin) {
-            plugin = options.plugin(use.name, beside, why, hint);
-        } else {
-            why = "plug-in \"" + use.name + "\" is not loaded: a plug-in is a program, and shaders may not run programs";
-            hint = "--allow-exec lets them";
-        }
+        if (options.plugin) plugin = options.plugin(use.name, beside, why, hint);
         if (plugin) {
             if (std::find(program.plugins.begin(), program.plugins.end(), plugin) == program.plugins.end())
                 program.plugins.push_back(std::move(plugin));
             continue;
         }
-        sources.error(use.place, why, hint);
+        sources.report(use.place, why, hint);
         unit.incomplete = true;
     }
 }
@@ -77,8 +74,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     for (const StructType& s : unit.structs) program->structs.push_back(summary(s, unit));
     lowerStructs(unit, sources);
     expandClasses(unit, sources);
-    if (unit.shaders.empty() && unit.functions.empty() && sources.errors() == 0)
-        sources.error({main, 1, 1}, "there is no shader in this file");
+    if (unit.shaders.empty() && unit.functions.empty() && sources.errors() == 0) sources.report({main, 1, 1}, msg::kNoShader);
     // Annotations belong to the shader they stand in or before; those at the end to the last one.
     const auto before = [](const Place& a, const Place& b) { return std::tie(a.line, a.column) < std::tie(b.line, b.column); };
     for (const Annotation& a : p.annotations) {
@@ -98,10 +94,8 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     checker.run();
     // An include that is missing does no harm when nothing of it is missed.
     for (const auto& m : p.missing) {
-        const std::string message = "cannot find the included file '" + m.name + "'";
-        if (unit.missed || sources.errors() > 0)
-            sources.error(m.place, message, "it is looked for beside the including file, then along the include path");
-        else sources.warning(m.place, message + "; nothing of it seems to be used");
+        const bool harm = unit.missed || sources.errors() > 0;
+        sources.report(m.place, harm ? msg::kIncludeMissing(m.name) : msg::kIncludeUnused(m.name));
     }
     const bool failed = sources.errors() > 0;
     checkColourNames(*program, sources);
@@ -118,7 +112,7 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
 std::unique_ptr<Program> compileFile(const std::string& path, const FrontOptions& options, Diagnostics& diagnostics) {
     auto text = readSource(path);
     if (!text) {
-        diagnostics.report(Severity::Error, Rie::NoFile, {path, 0, 0}, "cannot read this shader");
+        diagnostics.report(diagnostic(msg::kShaderUnreadable, Rie::NoFile, {path, 0, 0}));
         return nullptr;
     }
     return compile(*text, path, true, options, diagnostics);

@@ -32,11 +32,11 @@ public:
     Condition(const std::vector<Token>& t, Place p, SourceSet& s) : tokens_(t), place_(p), sources_(s) {}
     bool run() {
         if (tokens_.empty()) {
-            bad("#if needs an expression");
+            bad(msg::kConditionEmpty);
             return false;
         }
         const Value v = ternary();
-        if (!failed_ && at_ < tokens_.size()) bad("unexpected '" + std::string(tokens_[at_].text) + "' in the condition");
+        if (!failed_ && at_ < tokens_.size()) bad(msg::kCondition("unexpected '" + std::string(tokens_[at_].text) + "'"));
         return !failed_ && v.yes();
     }
 
@@ -48,8 +48,8 @@ private:
         }
         return false;
     }
-    void bad(std::string m) {
-        if (!failed_) sources_.error(at_ < tokens_.size() ? tokens_[at_].place : place_, std::move(m));
+    void bad(const Raised& m) {
+        if (!failed_) sources_.report(at_ < tokens_.size() ? tokens_[at_].place : place_, m);
         failed_ = true;
         at_ = tokens_.size();
     }
@@ -57,7 +57,7 @@ private:
         const Value c = binary(0);
         if (!accept("?")) return c;
         const Value a = ternary();
-        if (!accept(":")) bad("expected ':' in the condition");
+        if (!accept(":")) bad(msg::kCondition("expected ':'"));
         const Value b = ternary();
         return c.yes() ? a : b;
     }
@@ -109,7 +109,7 @@ private:
         if (op == "-") return (long long)(U(a) - U(b));
         if (op == "*") return (long long)(U(a) * U(b));
         if (b == 0) {
-            bad("division by zero in the condition");
+            bad(msg::kCondition("division by zero"));
             return 0;
         }
         if (b == -1) return op == "/" ? (long long)(0 - U(a)) : 0;
@@ -117,7 +117,7 @@ private:
     }
     Value unary() {
         if (++depth_ > limits::kExpressionDepth) {
-            bad("this condition is nested too deeply");
+            bad(msg::kConditionDepth);
             return 0;
         }
         Value v = 0;
@@ -129,14 +129,14 @@ private:
         else if (accept("~")) v = ~unary().integer();
         else if (accept("(")) {
             v = ternary();
-            if (!accept(")")) bad("expected ')' in the condition");
+            if (!accept(")")) bad(msg::kCondition("expected ')'"));
         } else if (at_ < tokens_.size() && tokens_[at_].kind == Tok::Number) {
             v = number(tokens_[at_]);
             ++at_;
         } else if (at_ < tokens_.size() && tokens_[at_].kind == Tok::Identifier) {
             ++at_; // an unknown name is 0
-            if (accept("(")) bad("a macro that is not defined is called in the condition");
-        } else bad("expected a value in the condition");
+            if (accept("(")) bad(msg::kCondition("a macro that is not defined is called"));
+        } else bad(msg::kCondition("expected a value"));
         --depth_;
         return v;
     }
@@ -157,9 +157,9 @@ private:
         if (t[0] != '0' || digits < 2 || t.substr(0, digits).find_first_of("89") != t.npos) return d < 9e18 ? (long long)d : 0;
         std::from_chars(begin, begin + digits, v, 8);
         if (double(v) != d)
-            sources_.warning(
-                token.place, "'" + std::string(t) + "' is octal in a condition of the preprocessor: " + std::to_string(v),
-                "in the shader itself it is " + std::string(t.substr(std::min(t.find_first_not_of('0'), digits - 1))));
+            sources_.report(token.place, msg::kOctal(t, v),
+                            "in the shader itself it is " +
+                                std::string(t.substr(std::min(t.find_first_not_of('0'), digits - 1))));
         return v;
     }
     const std::vector<Token>& tokens_;

@@ -92,7 +92,7 @@ Checker::Info& Checker::infer(Expr& e) {
             info.number = a.number;
         }
         if (cheapest(info) == Base::Void) {
-            sources_.error(e.place, std::string("'") + spelling(e.op) + "' cannot be applied to " + describe(*e.args[0]));
+            sources_.report(e.place, msg::kBadOperand(spelling(e.op), describe(*e.args[0])));
             poison(e, info);
         }
         break;
@@ -114,7 +114,7 @@ Checker::Info& Checker::infer(Expr& e) {
             const Info& i = infer(*a);
             const int c = costTo(i, Base::Float);
             if (c >= kNever) {
-                sources_.error(a->place, "a component must be a float, not " + describe(*a));
+                sources_.report(a->place, msg::kBadComponent(describe(*a)));
                 poison(e, info);
             }
             cost = sum(cost, c);
@@ -161,7 +161,7 @@ void Checker::inferMember(Expr& e, Info& info) {
     if (info.any) return;
     const Info& of = infos_.at(e.args[0].get());
     if (of.array.array || costTo(of, Base::String) >= kNever || of.handle == Handle::Text) {
-        sources_.error(e.place, "'->' needs a structure or a shader, not " + describe(*e.args[0]));
+        sources_.report(e.place, msg::kMemberOfNothing(describe(*e.args[0])));
         info.any = true;
         return;
     }
@@ -221,7 +221,7 @@ void Checker::inferIndex(Expr& e, Info& info) {
     }
     const bool ofHandle = e.args[0]->kind == ExprKind::Member; // an element of an array or a component: what is wanted
     if (costTo(index, Base::Float) >= kNever) {
-        sources_.error(e.args[1]->place, "an index must be a float, not " + describe(*e.args[1]));
+        sources_.report(e.args[1]->place, msg::kBadIndex(describe(*e.args[1])));
         info.any = true;
         return;
     }
@@ -237,8 +237,7 @@ void Checker::inferIndex(Expr& e, Info& info) {
         const Symbol* array = e.args[0]->symbol; // one of open length may be longer than its default
         if (i.kind == ExprKind::Number && base.array.array > 0 && !(array && array->open && i.number > -1) &&
             (i.number <= -1 || i.number >= base.array.array))
-            sources_.error(i.place, "index " + std::to_string(int(std::clamp(i.number, -1e6, 1e6))) + " is outside an array of " +
-                                        std::to_string(base.array.array));
+            sources_.report(i.place, msg::kIndexRange(int(std::clamp(i.number, -1e6, 1e6)), base.array.array));
         return;
     }
     int tuple = kNever;
@@ -246,8 +245,7 @@ void Checker::inferIndex(Expr& e, Info& info) {
     if (tuple < kNever) {
         info.cost[int(Base::Float)] = tuple;
         const Expr& i = *e.args[1];
-        if (i.kind == ExprKind::Number && (i.number <= -1 || i.number >= 3))
-            sources_.error(i.place, "a tuple has components 0, 1 and 2");
+        if (i.kind == ExprKind::Number && (i.number <= -1 || i.number >= 3)) sources_.report(i.place, msg::kComponentRange);
         return;
     }
     if (base.cost[int(Base::String)] < kNever) {
@@ -255,8 +253,8 @@ void Checker::inferIndex(Expr& e, Info& info) {
         info.channel = true;
         return;
     }
-    sources_.error(e.place, describe(*e.args[0]) + " has no elements",
-                   cheapest(base) == Base::Matrix ? "comp(m, row, column) reads a matrix" : "");
+    sources_.report(e.place, msg::kNoElements(describe(*e.args[0])),
+                    cheapest(base) == Base::Matrix ? "comp(m, row, column) reads a matrix" : "");
     info.any = true;
 }
 
@@ -327,9 +325,7 @@ void Checker::inferBinary(Expr& e, Info& info) {
         hint = "a written conversion, as in color x, makes them alike";
     else if (e.op == ExprOp::Cross && (a == Base::Float || b == Base::Float))
         hint = "'^' is the cross product; pow(x, y) is the power";
-    sources_.error(
-        e.place, std::string("'") + spelling(e.op) + "' cannot combine " + describe(*e.args[0]) + " and " + describe(*e.args[1]),
-        hint);
+    sources_.report(e.place, msg::kBadOperands(spelling(e.op), describe(*e.args[0]), describe(*e.args[1])), hint);
     poison(e, info);
 }
 
@@ -337,7 +333,7 @@ void Checker::inferAssign(Expr& e, Info& info) {
     const Info& l = infer(*e.args[0]);
     const Info& r = infer(*e.args[1]);
     if (!isVariable(*e.args[0])) {
-        if (!l.any) sources_.error(e.place, "what stands left of the assignment is not a variable");
+        if (!l.any) sources_.report(e.place, msg::kNotAssignable);
         info.any = true;
         return;
     }
@@ -352,7 +348,7 @@ void Checker::inferAssign(Expr& e, Info& info) {
                                                   (r.array.array == l.array.array || r.array.array < 0 || l.array.array < 0);
         info.handle = l.handle;
         if (!fits || (l.array.base == Base::String && !alike(l.handle, r.handle)) || e.op != ExprOp::Assign) {
-            sources_.error(e.place, "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0]));
+            sources_.report(e.place, msg::kBadAssignment(describe(*e.args[1]), describe(*e.args[0])));
             info.any = true;
         } else info.array = l.array;
         return;
@@ -373,11 +369,11 @@ void Checker::inferAssign(Expr& e, Info& info) {
     const bool mixed = target == Base::String && (!alike(l.handle, r.handle) || (e.op != ExprOp::Assign && handles));
     if (cost >= kNever || l.channel || mixed) {
         const bool toFloat = target == Base::Float && Type{cheapest(r), 0}.isTuple();
-        sources_.error(e.place,
-                       e.op == ExprOp::Assign ? "cannot assign " + describe(*e.args[1]) + " to " + describe(*e.args[0])
-                                              : std::string("'") + spelling(e.op) + "=' cannot combine " + describe(*e.args[0]) +
-                                                    " and " + describe(*e.args[1]),
-                       toFloat ? componentHint(cheapest(r)) : "");
+        const std::string to = describe(*e.args[0]), from = describe(*e.args[1]);
+        sources_.report(e.place,
+                        e.op == ExprOp::Assign ? msg::kBadAssignment(from, to)
+                                               : msg::kBadOperands(std::string(spelling(e.op)) + "=", to, from),
+                        toFloat ? componentHint(cheapest(r)) : "");
         info.any = true;
         return;
     }
@@ -391,7 +387,7 @@ void Checker::inferConditional(Expr& e, Info& info) {
     int cost = kNever;
     for (Base t : kAll) cost = std::min(cost, sum(c.cost[int(t)], conditionCost(t)));
     if (!c.any && cost >= kNever) {
-        sources_.error(e.args[0]->place, describe(*e.args[0]) + " cannot be a condition");
+        sources_.report(e.args[0]->place, msg::kBadCondition(describe(*e.args[0])));
         info.any = true;
     }
     if (c.any || a.any || b.any) info.any = true;
@@ -403,8 +399,7 @@ void Checker::inferConditional(Expr& e, Info& info) {
     const bool strings = a.cost[int(Base::String)] < kNever && b.cost[int(Base::String)] < kNever;
     info.handle = a.handle == Handle::Either ? b.handle : a.handle;
     if (cheapest(info) == Base::Void || (strings && !alike(a.handle, b.handle))) {
-        sources_.error(e.place,
-                       "the two values of '?' do not fit together: " + describe(*e.args[1]) + " and " + describe(*e.args[2]));
+        sources_.report(e.place, msg::kBadAlternatives(describe(*e.args[1]), describe(*e.args[2])));
         info.any = true;
     }
 }
@@ -427,11 +422,11 @@ void Checker::inferCast(Expr& e, Info& info) {
     if (e.space) {
         const Info& s = infer(*e.space);
         if (!s.any && (costTo(s, Base::String) >= kNever || s.handle == Handle::Shader)) {
-            sources_.error(e.space->place, "the name of a space is a string");
+            sources_.report(e.space->place, msg::kSpaceName);
             info.any = true;
         }
         if (!Type{e.type.base, 0}.isTuple() && e.type.base != Base::Matrix) {
-            sources_.error(e.space->place, "a " + toString(e.type) + " is in no space");
+            sources_.report(e.space->place, msg::kNoSpace(toString(e.type)));
             info.any = true;
         }
     }
@@ -446,7 +441,7 @@ void Checker::inferCast(Expr& e, Info& info) {
         bool fits = a.array.base == e.type.base && a.array.array != 0 && e.type.array != 0;
         if (fits) info.array = a.array;
         else info.any = true;
-        if (!fits) sources_.error(e.place, "cannot convert " + describe(operand) + " to " + toString(e.type));
+        if (!fits) sources_.report(e.place, msg::kBadConversion(describe(operand), toString(e.type)));
         return;
     }
     int cost = kNever;
@@ -454,8 +449,8 @@ void Checker::inferCast(Expr& e, Info& info) {
     info.handle = e.handle ? Handle::Shader : Handle::Text;
     if (cost >= kNever || (e.type.base == Base::String && !alike(a.handle, info.handle))) {
         const bool toFloat = e.type.base == Base::Float && Type{cheapest(a), 0}.isTuple();
-        sources_.error(e.place, "cannot convert " + describe(operand) + " to " + named(e.type, info.handle),
-                       toFloat ? componentHint(cheapest(a)) : "");
+        sources_.report(e.place, msg::kBadConversion(describe(operand), named(e.type, info.handle)),
+                        toFloat ? componentHint(cheapest(a)) : "");
         info.any = true;
         return;
     }

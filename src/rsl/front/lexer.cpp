@@ -60,7 +60,7 @@ void Lexer::skipBlank(Token& t) {
                     lineBegin_ = pos_ + 1;
                 }
             if (at(pos_) < 0) {
-                sources_.error(begin, "this comment does not end");
+                sources_.report(begin, msg::kUnfinishedComment);
                 sources_.cut = true;
             } else pos_ += 2;
             t.space = true;

@@ -96,10 +96,9 @@ private:
         if (s->name != "L" && s->name != "Cl" && s->name != "Ol") return;
         if (found_ && !*found_) *found_ = s;
         if (found_ || !told_.insert(s).second) return;
-        sources_.warning(place,
-                         "'" + s->name + "' is read outside illuminance()" + where + "; no light is meant there, and it is zero",
-                         "illuminance (P, N, PI/2) { ... } runs once for each light; " +
-                             std::string(s->name == "L" ? "I is the direction of view" : "diffuse(N) adds them all"));
+        sources_.report(place, msg::kUnlit(s->name, where),
+                        "illuminance (P, N, PI/2) { ... } runs once for each light; " +
+                            std::string(s->name == "L" ? "I is the direction of view" : "diffuse(N) adds them all"));
     }
 
     /// A function means the light of the illuminance() that calls it.
@@ -124,11 +123,8 @@ private:
             !told_.insert(s).second)
             return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
-        sources_.warning(e.place, "'" + s->name + "' " + (maybe ? "may be" : "is") + " read before it has a value; it is " +
-                                      (s->type.base != Base::String ? "zero"
-                                       : s->handle                  ? "null"
-                                                                    : "empty") +
-                                      " then");
+        const char* value = s->type.base != Base::String ? "zero" : s->handle ? "null" : "empty";
+        sources_.report(e.place, maybe ? msg::kMaybeUninitialised(s->name, value) : msg::kUninitialised(s->name, value));
     }
 
     /// What stands left of an assignment, or is put out: its indices are read, itself it is written.
@@ -139,11 +135,7 @@ private:
                 expression(*x->args[1]);
         const Symbol* s = root(e);
         if (!found_) uniformHazard(e, s);
-        if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P")
-            sources_.warning(e.place,
-                             "a surface shader that moves 'P' displaces its primitive, but not where rays or lights that need "
-                             "them decide how far",
-                             "a displacement shader is the place for it");
+        if (surface_ && s && s->origin == Symbol::Origin::Global && s->name == "P") sources_.report(e.place, msg::kMovingSurface);
         if (s) assigned_.insert(s);
         given(s);
     }
@@ -155,8 +147,7 @@ private:
         for (size_t i = 0; i < e.args.size(); ++i) {
             if (!e.args[i] || e.args[i]->kind != ExprKind::Variable || !isOutput(e, i)) continue;
             if (outputs.insert(e.args[i]->symbol).second) continue;
-            sources_.warning(e.args[i]->place, "'" + e.args[i]->text + "' is given to two output parameters of '" +
-                                                   e.function->name + "'; they are one variable in this call");
+            sources_.report(e.args[i]->place, msg::kSharedOutput(e.args[i]->text, e.function->name));
             return;
         }
     }
@@ -225,10 +216,7 @@ private:
             else expression(*p.value);
         }
         if (s.kind == StmtKind::Illuminance && lightLoops_ > 0 && !now_.dead && !found_)
-            sources_.warning(
-                s.place,
-                "illuminance inside illuminance: the RenderMan specification forbids it, and other renderers may refuse it",
-                "here the inner loop visits all its lights in every turn of the outer one");
+            sources_.report(s.place, msg::kNestedIlluminance);
         ++loops_;
         lightLoops_ += s.kind == StmtKind::Illuminance;
         statement(s.body.empty() ? nullptr : s.body[0].get());
@@ -254,9 +242,7 @@ private:
         if (!u || varyingConditions_ <= declaredUnder(u) || u->storage != Storage::Uniform ||
             u->origin != Symbol::Origin::Local || u->type.base == Base::String)
             return;
-        sources_.warning(target.place, "the uniform variable '" + u->name +
-                                           "' is changed where only some points come, as the condition is varying; "
-                                           "each shaded point keeps its own");
+        sources_.report(target.place, msg::kUniformInVarying(u->name));
     }
 
     void statement(const Stmt* p) {
@@ -376,7 +362,7 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
         if (skipped.count(s.name) || usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) ||
             s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0 || s.name.rfind("this->", 0) == 0)
             return;
-        sources.warning(s.place, std::string(parameter ? "parameter" : "variable") + " '" + s.name + "' is not used");
+        sources.report(s.place, parameter ? msg::kUnusedParameter(s.name) : msg::kUnusedVariable(s.name));
     };
     lintCommas(tokens, sources);
     Flow::LightReads reads;
@@ -412,9 +398,7 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
         for (const auto& f : s->nested)
             if (s->object && f->anywhere && !s->publics.count(f->name) && ours(f->place)) {
                 const std::string near = nearestName(f->name, entries);
-                sources.warning(
-                    f->place, "method '" + f->name + "' is called by nobody: it is not public, and the renderer does not know it",
-                    near.empty() ? "" : "did you mean '" + near + "'?");
+                sources.report(f->place, msg::kUnknownMethod(f->name), near.empty() ? "" : "did you mean '" + near + "'?");
             }
     everyFunction(program, [&](const Function& f) {
         if (ours(f.place))

@@ -89,12 +89,10 @@ void name(const std::string& given, Place place, const NamedArgument& a, SourceS
     const std::string near = nearestName(given, a.names);
     if (!a.all && (near.empty() || near == given)) return;
     const std::string what = a.what;
-    if (what == "basis")
-        sources.warning(place, "there is no spline basis \"" + given + "\"; linear is used", oneOf(near, a.names));
-    else if (what == "area") sources.warning(place, "area() has no strategy \"" + given + "\"", oneOf(near, a.names));
-    else if (what == "space")
-        sources.warning(place, "no predefined space is called \"" + given + "\"; the scene must have it", didYouMean(near));
-    else sources.warning(place, what + "() knows nothing of the name \"" + given + "\"", oneOf(near, a.names));
+    if (what == "basis") sources.report(place, msg::kUnknownBasis(given), oneOf(near, a.names));
+    else if (what == "area") sources.report(place, msg::kUnknownAreaStrategy(given), oneOf(near, a.names));
+    else if (what == "space") sources.report(place, msg::kUnknownSpace(given), didYouMean(near));
+    else sources.report(place, msg::kUnknownName(what, given), oneOf(near, a.names));
 }
 
 /// `point "wrold" (...)`; the spaces of colours are the checker's.
@@ -147,32 +145,29 @@ void pattern(const Expr& e, SourceSet& sources) {
                                   : "colours")
                     : (b == Base::Float || b == Base::Bool || triple ? nullptr : "floats"); // a triple shows its parts
             if (wants)
-                sources.warning(v.place, std::string("'%") + c + "' is for " + wants + ", and this is a " +
-                                             (v.handle || (v.symbol && v.symbol->handle) ? "shader" : toString(v.type)));
+                sources.report(v.place, msg::kFormatKind(c, wants,
+                                                         v.handle || (v.symbol && v.symbol->handle) ? std::string("shader")
+                                                                                                    : toString(v.type)));
         } else {
-            sources.warning(e.args[0]->place,
-                            c ? std::string("'%") + c + "' is no conversion; it is shown as it stands"
-                              : "the pattern ends in a '%', which is shown as it stands",
-                            "%f %e %g %d for floats, %p %c for points and colours, %m for matrices, %s for strings; %% is a '%'");
+            sources.report(e.args[0]->place, c ? msg::kFormatConversion(c) : Raised(msg::kFormatEnd));
         }
     }
     if (takes > values)
-        sources.warning(e.args[0]->place, "the pattern takes " + counted(takes, "value") + ", and there " +
-                                              (values == 1   ? "is 1"
-                                               : values == 0 ? "is none"
-                                                             : "are " + std::to_string(values)));
+        sources.report(e.args[0]->place,
+                       msg::kFormatFew(counted(takes, "value"), values == 1   ? std::string("is 1")
+                                                                : values == 0 ? std::string("is none")
+                                                                              : "are " + std::to_string(values)));
     else if (takes < values)
-        sources.warning(e.args[takes + 1]->place, "the pattern takes " +
-                                                      (takes == 0 ? "no value" : "only " + counted(takes, "value")) +
-                                                      "; this one is not shown");
+        sources.report(e.args[takes + 1]->place,
+                       msg::kFormatMany(takes == 0 ? std::string("no value") : "only " + counted(takes, "value")));
 }
 
 void filter(const Expr& e, SourceSet& sources) {
     if (e.text == "filterstep") return; // the checker knows its own
     for (const NamedArg& p : e.pairs)
         if (p.name == "filter" && p.value && p.value->kind == ExprKind::String && !contains(filters(), p.value->text))
-            sources.warning(p.value->place, "there is no filter \"" + p.value->text + "\" of '" + e.text + "'",
-                            oneOf(nearestName(p.value->text, filters()), filters()));
+            sources.report(p.value->place, msg::kNoSuchFilter(p.value->text, e.text),
+                           oneOf(nearestName(p.value->text, filters()), filters()));
 }
 
 } // namespace
@@ -196,7 +191,7 @@ void lintCall(const Expr& e, SourceSet& sources) {
     for (const NamedArg& p : e.pairs) {
         if (contains(known, p.name) || p.name.find(':') != std::string::npos) continue;
         if (const std::string near = nearestName(p.name, known); !near.empty())
-            sources.warning(p.place, "'" + op + "' has no parameter \"" + p.name + "\"; it is ignored", didYouMean(near));
+            sources.report(p.place, msg::kNoSuchParameter(op, p.name), didYouMean(near));
     }
 }
 
@@ -219,17 +214,12 @@ void lintMessage(const Expr& e, const Program& program, SourceSet& sources) {
             if (p.symbol->storage != Storage::Varying) return; // of one that it may take
             varying = s.get();
         }
-    if (varying)
-        sources.warning(e.args[1]->place,
-                        "'" + to->symbol->name + "' is uniform and takes no varying parameter, as \"" + e.args[0]->text +
-                            "\" of '" + varying->name + "' is: " + op + "() leaves it as it is",
-                        "a varying variable takes it");
+    if (varying) sources.report(e.args[1]->place, msg::kUniformReceiver(to->symbol->name, e.args[0]->text, varying->name, op));
 }
 
 void lintCondition(const Expr& e, SourceSet& sources) {
     const Expr& x = bare(e);
-    if (x.kind == ExprKind::Assign && x.op == ExprOp::Assign)
-        sources.warning(x.place, "this condition is an assignment: it is true unless the value is zero", "'==' compares");
+    if (x.kind == ExprKind::Assign && x.op == ExprOp::Assign) sources.report(x.place, msg::kAssignmentCondition);
     if (x.kind == ExprKind::Unary || x.kind == ExprKind::Cast ||
         (x.kind == ExprKind::Binary && (x.op == ExprOp::And || x.op == ExprOp::Or || x.op == ExprOp::NotEqual)))
         for (const auto& a : x.args)
@@ -248,8 +238,8 @@ void lintPairs(const Stmt& s, SourceSet& sources) {
         if (contains(known, head)) continue;
         const std::string near = nearestName(head, known);
         if (!near.empty())
-            sources.warning(p.place, "'gather' has no parameter \"" + p.name + "\"; it is ignored",
-                            didYouMean(colon == std::string::npos ? near : near + p.name.substr(colon)));
+            sources.report(p.place, msg::kNoSuchParameter("gather", p.name),
+                           didYouMean(colon == std::string::npos ? near : near + p.name.substr(colon)));
     }
 }
 
@@ -257,7 +247,7 @@ void lintCommas(const std::vector<Token>& tokens, SourceSet& sources) {
     for (size_t i = 0; i + 1 < tokens.size(); ++i)
         if (tokens[i].is(",") && tokens[i + 1].is(")") && tokens[i].place.file >= 0 &&
             sources.name(tokens[i].place.file) == sources.name(0))
-            sources.warning(tokens[i].place, "nothing stands behind this ',' before the ')'; it is ignored");
+            sources.report(tokens[i].place, msg::kTrailingComma);
 }
 
 } // namespace alpenglow::rsl::front

@@ -1,5 +1,6 @@
 #include "rsl/front/osl.h"
 #include "rsl/front/osl_words.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 #include <map>
 #include <set>
@@ -30,8 +31,8 @@ private:
     void fail(size_t at, const std::string& what, const std::string& hint = {}) {
         const OslWord* w = at < w_.size() ? &w_[at] : nullptr;
         if (!failed_)
-            diagnostics_.report(Severity::Error, Rie::Unimplement, {path_, w ? w->line : 0, w ? w->column : 0},
-                                "this OSL shader is not read: " + what, hint);
+            diagnostics_.report(
+                diagnostic(msg::kOslNotRead(what), Rie::Unimplement, {path_, w ? w->line : 0, w ? w->column : 0}, hint));
         failed_ = true;
     }
     bool is(size_t i, std::string_view text) const {

@@ -52,34 +52,38 @@ Place Parser::endOfLast() const {
     return {last.place.file, last.place.line, last.place.column + int(last.text.size())};
 }
 
-void Parser::fail(Place p, std::string message, std::string hint) {
+void Parser::fail(Place p, const Raised& message, std::string hint) {
     // One message for one place: what follows while we are still there is a consequence.
-    if (lastError_ != at_ && !atCut()) sources_.error(p, std::move(message), std::move(hint));
+    if (lastError_ != at_ && !atCut()) sources_.report(p, message, std::move(hint));
     lastError_ = at_;
     throw SyntaxError{};
 }
 
-void Parser::failHere(const std::string& expected) {
+void Parser::failHere(const Raised& expected) {
     if (peek().kind == Tok::Invalid && peek().text.empty()) { // reported where it was made
         lastError_ = at_;
         throw SyntaxError{};
     }
     if (peek().kind == Tok::Invalid)
-        fail(peek().place,
-             peek().text[0] == '"' ? "this string does not end on its line" : "the character " + shown() + " means nothing here");
-    fail(peek().place, expected + " before " + shown());
+        fail(peek().place, peek().text[0] == '"' ? Raised(msg::kUnfinishedString) : msg::kStrayCharacter(shown()));
+    fail(peek().place, expected);
 }
 
 void Parser::expect(std::string_view s, const char* where) {
-    if (!accept(s)) failHere("expected '" + std::string(s) + "' " + where);
+    if (accept(s)) return;
+    failHere(msg::kExpectedToken("'" + std::string(s) + "'" + (*where ? " " : "") + where, shown()));
 }
 
 void Parser::expectSemicolon(const char* after) {
     if (accept(";")) return;
     const bool newLine = peek().lineStart || at("}") || peek().kind == Tok::End;
-    if (!newLine || peek().kind == Tok::Invalid) failHere(std::string("expected ';' after ") + after);
+    if (!newLine || peek().kind == Tok::Invalid) failHere(msg::kExpectedSemicolonBefore(after, shown()));
     // It was forgotten at the end of a line: say so there and go on as if it stood there.
-    if (!atCut()) sources_.error(endOfLast(), std::string("expected ';' after ") + after);
+    if (!atCut()) sources_.report(endOfLast(), msg::kExpectedSemicolon(after));
+}
+
+void Parser::expectSeparator(const char* after) {
+    if (!accept(";")) failHere(msg::kExpectedSemicolonBefore(after, shown()));
 }
 
 /// At an opening bracket: over everything up to the one that closes it.
@@ -121,7 +125,7 @@ Parser::Depth::Depth(Parser& p) : parser(p) {
     p.unit_.incomplete = true;
     const Place at = p.peek().place;
     p.at_ = p.tokens_.size() - 1; // no use in reading on
-    if (first) p.sources_.error(at, "nested more than " + std::to_string(limits::kExpressionDepth) + " deep");
+    if (first) p.sources_.report(at, msg::kTooDeep(limits::kExpressionDepth));
     p.lastError_ = p.at_;
     throw SyntaxError{};
 }
@@ -188,7 +192,7 @@ Unit Parser::parse() {
 }
 
 bool Parser::notYet(Place p, const char* what) {
-    if (told_.insert(what).second) sources_.error(p, std::string(what) + " are not yet available");
+    if (told_.insert(what).second) sources_.report(p, msg::kNotAvailable(what));
     unit_.incomplete = true;
     return true;
 }
@@ -196,7 +200,7 @@ bool Parser::notYet(Place p, const char* what) {
 void Parser::topLevel() {
     if (accept(";")) return;
     if (at("}")) {
-        sources_.warning(take().place, "this '}' closes nothing and is ignored");
+        sources_.report(take().place, msg::kStrayBrace);
         return;
     }
     const Token& first = peek();
@@ -211,7 +215,7 @@ void Parser::topLevel() {
     if (first.kind == Tok::Identifier && shaderKindNamed(first.text) && peek(1).kind == Tok::Identifier &&
         peek(2).kind == Tok::Identifier) {
         const std::string name(peek(1).text), next(peek(2).text);
-        fail(peek(2).place, "expected '(' after the name of shader '" + name + "' before '" + next + "'");
+        fail(peek(2).place, msg::kExpectedToken("'(' after the name of shader '" + name + "'", "'" + next + "'"));
     }
     if (plugin()) return;
     const Specifiers s = specifiers();
@@ -225,8 +229,7 @@ void Parser::topLevel() {
     if (peek().kind != Tok::Identifier || !peek(1).is("(")) {
         std::vector<std::string> kinds = {"surface", "displacement", "light", "volume", "imager", "transformation"};
         const std::string near = nearestName(first.text, kinds);
-        fail(peek().place, "expected a shader or a function before " + shown(),
-             near.empty() || typed ? "" : "did you mean '" + near + "'?");
+        fail(peek().place, msg::kExpectedDefinition(shown()), near.empty() || typed ? "" : "did you mean '" + near + "'?");
     }
     auto f = function(ofType(s), type, typed);
     if (!f) return;
@@ -236,8 +239,7 @@ void Parser::topLevel() {
         bool same = old->name == f->name && old->result == f->result && old->parameters.size() == f->parameters.size();
         for (size_t i = 0; same && i < f->parameters.size(); ++i) same = old->parameters[i]->type == f->parameters[i]->type;
         if (!same) continue;
-        if (old->place.file == f->place.file)
-            sources_.warning(f->place, "function '" + f->name + "' is defined again; the last definition counts");
+        if (old->place.file == f->place.file) sources_.report(f->place, msg::kFunctionRedefined(f->name));
         old = std::move(f);
         return;
     }
@@ -262,8 +264,8 @@ void Parser::shader(ShaderKind kind) {
     owner_ = {&s->symbols, &s->nested};
     typeWords_.clear();
     if (accept("(")) parameters(owner_, &s->parameters, nullptr);
-    if (at(";") && peek(1).is("{")) sources_.warning(take().place, "a ';' between a shader's parameters and its body is ignored");
-    if (!at("{")) failHere("expected '{' of the body of shader '" + s->name + "'");
+    if (at(";") && peek(1).is("{")) sources_.report(take().place, msg::kStraySemicolon);
+    if (!at("{")) failHere(msg::kExpectedToken("'{' of the body of shader '" + s->name + "'", shown()));
     s->body = block();
     owner_ = {};
     typeWords_.clear();

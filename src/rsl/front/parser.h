@@ -62,8 +62,9 @@ private:
     bool accept(std::string_view s);
     void expect(std::string_view s, const char* where);
     void expectSemicolon(const char* after);
-    [[noreturn]] void fail(Place, std::string message, std::string hint = {});
-    [[noreturn]] void failHere(const std::string& expected);
+    void expectSeparator(const char* after); ///< a ';' that ends no statement
+    [[noreturn]] void fail(Place, const Raised&, std::string hint = {});
+    [[noreturn]] void failHere(const Raised& expected);
     Place endOfLast() const;
     bool atCut() const { return sources_.cut && peek().kind == Tok::End; } ///< the rest is missing, as was reported
     void skipBalanced();

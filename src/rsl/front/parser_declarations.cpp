@@ -27,7 +27,7 @@ std::unique_ptr<Function> Parser::function(const Specifiers& s, Type type, bool 
             returnsValue_ = outerReturns;
             return nullptr;
         }
-        if (!at("{")) failHere("expected '{' of the body of function '" + f->name + "'");
+        if (!at("{")) failHere(msg::kExpectedToken("'{' of the body of function '" + f->name + "'", shown()));
         f->body = block();
     } catch (const SyntaxError&) {
         owner_ = outer;
@@ -81,7 +81,7 @@ Type Parser::dimensions(Type type, ExprPtr* length) {
         if (type.array < 0) *length = std::move(e);
     }
     expect("]", "after the length of an array");
-    if (at("[")) fail(peek().place, "an array of arrays is not allowed");
+    if (at("[")) fail(peek().place, msg::kArrayOfArrays);
     return type;
 }
 
@@ -109,8 +109,8 @@ int Parser::constantLength(const Expr& e, Place place, bool open) {
     const auto n = value(e);
     if (n && *n >= 1 && *n <= limits::kShaderArray) return int(*n);
     if (!n && open) return -1;
-    if (!n) sources_.error(e.place, "the length of an array must be a constant number");
-    else sources_.error(place, "the length of an array must be between 1 and " + std::to_string(limits::kShaderArray));
+    if (!n) sources_.report(e.place, msg::kArrayLengthConstant);
+    else sources_.report(place, msg::kArrayLengthRange(limits::kShaderArray));
     return 1;
 }
 
@@ -157,7 +157,7 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
     std::optional<Base> base, before; // of this group, of the group before the last ';'
     ExprPtr space;
     while (!accept(")")) {
-        if (peek().kind == Tok::End || at("{")) failHere("expected ')' after the parameters");
+        if (peek().kind == Tok::End || at("{")) failHere(msg::kExpectedToken("')' after the parameters", shown()));
         try {
             if (at(";")) {
                 take();
@@ -171,27 +171,26 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                                   ((at("constant") || at("const") || at("public")) && (atTypeName(1) || specifies(peek(1))));
             if (newGroup) {
                 group = specifiers();
-                if (!atTypeName()) failHere("expected a type");
+                if (!atTypeName()) failHere(msg::kExpectedType(shown()));
                 base = takeBase();
                 group.handle = handle_;
             }
             if (newGroup) space = declaredSpace(base.value_or(Base::Void));
             if (!base && before && *before != Base::Void && atName() && (peek(1).is("=") || peek(1).is(";") || peek(1).is(","))) {
                 base = before;
-                sources_.warning(peek().place, "parameter '" + std::string(peek().text) + "' has no type; it is taken for a " +
-                                                   toString(Type{*base, 0}) + " like the one before");
+                sources_.report(peek().place, msg::kUntypedParameter(peek().text, toString(Type{*base, 0})));
             }
-            if (!base) failHere("expected the type of a parameter");
+            if (!base) failHere(msg::kExpectedParameterType(shown()));
             if (*base == Base::Void) {
-                if (at(")")) continue;                                      // (void), as in C
-                sources_.error(peek().place, "a parameter cannot be void"); // calls with a value for it are no errors
+                if (at(")")) continue;                              // (void), as in C
+                sources_.report(peek().place, msg::kVoidParameter); // calls with a value for it are no errors
             }
             Type type = dimensions({*base, 0});
             if (function && (at(",") || at(";") || at(")"))) { // of a prototype: the name may be missing
                 function->push_back(declare(owner, peek(), type, group));
                 continue;
             }
-            if (!atName()) failHere("expected the name of a parameter");
+            if (!atName()) failHere(msg::kExpectedName("a parameter", shown()));
             const Token& name = takeName();
             type = dimensions(type);
             Symbol* symbol = declare(owner, name, type, group);
@@ -208,16 +207,15 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                 } else if (defaults && inObject_ && !isStruct(type)) {
                     defaults->resize(function->size());
                     defaults->back() = std::move(value);
-                } else sources_.warning(value->place, "parameters of functions have no default values; this one is ignored");
+                } else sources_.report(value->place, msg::kFunctionDefault);
             } else if (shader && !symbol->output && !isStruct(type) && type.base != Base::Void && symbol->type.array >= 0) {
                 const char* what = type.base != Base::String ? "zero" : symbol->handle ? "null" : "empty";
-                sources_.warning(symbol->place,
-                                 "parameter '" + symbol->name + "' has no default value; it is " + what + " unless set");
+                sources_.report(symbol->place, msg::kNoDefault(symbol->name, what));
             }
             if (at(")") || at(";") || at(",")) continue;
             if (atTypeName() || at("uniform") || at("varying") || at("output"))
-                sources_.warning(endOfLast(), "expected ';' before the next parameter; read as if it stood here");
-            else failHere("expected ';', ',' or ')' after a parameter");
+                sources_.report(endOfLast(), msg::kExpectedSemicolonParameter);
+            else failHere(msg::kExpectedToken("';', ',' or ')' after a parameter", shown()));
         } catch (const SyntaxError&) {
             if (tooDeep_) throw;
             const size_t begin = at_ > 2 ? at_ - 2 : 0; // the parameter's own name, too

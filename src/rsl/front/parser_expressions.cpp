@@ -16,8 +16,7 @@ ExprPtr Parser::node(ExprKind kind, Place place, ExprOp op) {
 
 void Parser::grow(Expr& parent, const Expr& child) {
     parent.height = std::max(parent.height, child.height + 1);
-    if (parent.height > limits::kTreeHeight)
-        fail(parent.place, "this expression is longer than " + std::to_string(limits::kTreeHeight) + " operations in a row");
+    if (parent.height > limits::kTreeHeight) fail(parent.place, msg::kTooLong(limits::kTreeHeight));
 }
 
 void Parser::adopt(Expr& parent, ExprPtr child) {
@@ -51,8 +50,7 @@ bool Parser::atStep(size_t k) const {
 
 /// variable += 1 or variable -= 1
 ExprPtr Parser::step(ExprPtr variable, const Token& sign) {
-    sources_.warning(sign.place, "'" + std::string(sign.text) + std::string(sign.text) +
-                                     "' is not of this language; it is read as '" + std::string(sign.text) + "= 1'");
+    sources_.report(sign.place, msg::kNotRslStep(std::string(sign.text) + std::string(sign.text), sign.text));
     auto e = node(ExprKind::Assign, sign.place, sign.text == "+" ? ExprOp::Add : ExprOp::Sub);
     auto one = node(ExprKind::Number, sign.place);
     one->number = 1;
@@ -109,7 +107,7 @@ ExprPtr Parser::binary(int level) {
         if (!found || found->level < level) return left;
         auto e = node(found->op == ExprOp::None ? ExprKind::ShadeopCall : ExprKind::Binary, take().place, found->op);
         if (found->op == ExprOp::None) {
-            sources_.warning(e->place, "'%' is not of this language; it is read as mod(a, b)");
+            sources_.report(e->place, msg::kNotRslMod);
             e->text = "mod";
         }
         adopt(*e, std::move(left));
@@ -122,10 +120,8 @@ ExprPtr Parser::unary() {
     if (at("-") || at("!") || at("+")) {
         Depth depth(*this);
         if (atStep(0) && peek(2).kind == Tok::Identifier)
-            sources_.warning(peek().place,
-                             "'" + std::string(2, peek().text[0]) +
-                                 "' before a variable is two signs in an expression; nothing is changed",
-                             "the value before is " + std::string(peek(2).text) + std::string(2, peek().text[0]));
+            sources_.report(peek().place, msg::kTwoSigns(std::string(2, peek().text[0])),
+                            "the value before is " + std::string(peek(2).text) + std::string(2, peek().text[0]));
         const Token& t = take();
         if (t.text == "+") return unary();
         auto operand = unary();
@@ -148,7 +144,7 @@ ExprPtr Parser::castExpression() {
     auto e = node(ExprKind::Cast, peek().place);
     e->type.base = takeBase();
     e->handle = handle_;
-    if (e->type.base == Base::Void) fail(e->place, "'void' is not the type of a value");
+    if (e->type.base == Base::Void) fail(e->place, msg::kVoidValue);
     if (at("[") && peek(1).is("]")) {
         take();
         take();
@@ -195,7 +191,7 @@ ExprPtr Parser::postfix() {
             e = std::move(index);
         } else if (at("->")) {
             const Place place = take().place;
-            if (peek().kind != Tok::Identifier) failHere("expected the name of a member behind '->'");
+            if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a member behind '->'", shown()));
             auto member = node(ExprKind::Member, place);
             member->text = std::string(take().text);
             adopt(*member, std::move(e));
@@ -233,9 +229,9 @@ ExprPtr Parser::primary() {
             // Too large or too small for a double: the exponent's sign says which.
             e->number = t.text.find("e-") != t.text.npos || t.text.find("E-") != t.text.npos ? 0 : 3e38;
         } else if (r.ec != std::errc() || (r.ptr != end && !suffix)) {
-            fail(t.place, "'" + std::string(t.text.substr(0, 40)) + "' is not a number");
+            fail(t.place, msg::kBadNumber(t.text.substr(0, 40)));
         }
-        if (suffix) sources_.warning(t.place, "numbers take no suffix; '" + std::string(t.text) + "' is read without it");
+        if (suffix) sources_.report(t.place, msg::kNumberSuffix(t.text));
         take();
         return e;
     }
@@ -249,7 +245,7 @@ ExprPtr Parser::primary() {
     if (t.kind == Tok::Identifier) {
         static const std::unordered_set<std::string_view> kReserved = {
             "if", "else", "while", "for", "break", "continue", "return", "uniform", "varying", "output", "extern"};
-        if (kReserved.count(t.text)) failHere("expected an expression");
+        if (kReserved.count(t.text)) failHere(msg::kExpectedExpression(shown()));
         take();
         std::string name(t.text);
         if (structs_.count(name) && at(":") && peek(1).is(":") && peek(2).kind == Tok::Identifier && peek(3).is("(")) {
@@ -268,7 +264,7 @@ ExprPtr Parser::primary() {
         for (const auto& a : e->args) grow(*e, *a);
         return e;
     }
-    failHere("expected an expression");
+    failHere(msg::kExpectedExpression(shown()));
 }
 
 /// Behind '(': expressions up to and with ')'.
@@ -279,10 +275,10 @@ void Parser::arguments(std::vector<ExprPtr>& out) {
         if (accept(",")) continue;
         if (accept(")")) return;
         if (at(";") && !peek(1).lineStart && !peek(1).is("}")) { // some write calls as they write parameter lists
-            sources_.warning(take().place, "arguments are separated by ',', not ';'");
+            sources_.report(take().place, msg::kSemicolonInCall);
             continue;
         }
-        failHere("expected ',' or ')' after an argument");
+        failHere(msg::kExpectedArgumentEnd(shown()));
     }
 }
 
@@ -291,8 +287,7 @@ ExprPtr Parser::parenthesis() {
     const Place place = take().place;
     if (atTypeName() && peek(1).is(")")) {
         const std::string type(peek().text);
-        sources_.warning(place, "a conversion is written without parentheses around the type",
-                         "write " + type + "(...) or " + type + " x");
+        sources_.report(place, msg::kCastParentheses, "write " + type + "(...) or " + type + " x");
         ExprPtr e = node(ExprKind::Cast, place);
         e->type.base = takeBase();
         e->handle = handle_;
@@ -302,15 +297,13 @@ ExprPtr Parser::parenthesis() {
     }
     auto e = expression();
     if (accept(")")) return e;
-    if (!at(",")) failHere("expected ')'");
+    if (!at(",")) failHere(msg::kExpectedClosing(shown()));
     auto tuple = node(ExprKind::Tuple, place);
     adopt(*tuple, std::move(e));
     while (accept(",")) adopt(*tuple, expression());
     expect(")", "after the components");
     if (tuple->args.size() == 16) tuple->kind = ExprKind::MatrixTuple;
-    else if (tuple->args.size() != 3)
-        sources_.error(place,
-                       std::to_string(tuple->args.size()) + " values in parentheses: a tuple has 3 components, a matrix 16");
+    else if (tuple->args.size() != 3) sources_.report(place, msg::kTupleLength(tuple->args.size()));
     return tuple;
 }
 
@@ -323,8 +316,7 @@ ExprPtr Parser::arrayList() {
             break;
         }
         adopt(*e, assignment());
-        if (e->args.size() > size_t(limits::kShaderArray))
-            fail(e->place, "an array has at most " + std::to_string(limits::kShaderArray) + " elements");
+        if (e->args.size() > size_t(limits::kShaderArray)) fail(e->place, msg::kArrayElements(limits::kShaderArray));
         if (!accept(",")) break;
     }
     expect("}", "after the elements of an array");

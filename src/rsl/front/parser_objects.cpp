@@ -11,7 +11,7 @@ void Parser::extends(StructType& type) {
     if (!accept(":")) return;
     if (at("public") || at("private")) take();
     const auto base = peek().kind == Tok::Identifier ? structs_.find(std::string(peek().text)) : structs_.end();
-    if (base == structs_.end()) failHere("expected the name of a structure that is defined before this one");
+    if (base == structs_.end()) failHere(msg::kExpectedName("a structure that is defined before this one", shown()));
     take();
     type.base = base->second;
     for (const StructMember& m : unit_.structs[size_t(type.base)].members) {
@@ -23,12 +23,12 @@ void Parser::extends(StructType& type) {
 void Parser::structure() {
     const size_t begins = at_;
     take();
-    if (peek().kind != Tok::Identifier) failHere("expected the name of a structure");
+    if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a structure", shown()));
     const Token& name = take();
     StructType type;
     extends(type);
     const size_t inherited = type.members.size();
-    if (!at("{")) failHere("expected '{' of structure '" + std::string(name.text) + "'");
+    if (!at("{")) failHere(msg::kExpectedToken("'{' of structure '" + std::string(name.text) + "'", shown()));
     take();
     type.name = std::string(name.text);
     type.place = name.place;
@@ -42,7 +42,7 @@ void Parser::structure() {
         else expectSemicolon("the parameters of a method");
     };
     while (!accept("}")) {
-        if (peek().kind == Tok::End) failHere("expected '}' of structure '" + type.name + "'");
+        if (peek().kind == Tok::End) failHere(msg::kExpectedToken("'}' of structure '" + type.name + "'", shown()));
         const size_t before = at_;
         try {
             if (accept(";") || accept(",")) continue;
@@ -59,8 +59,8 @@ void Parser::structure() {
                 continue;
             }
             if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier)
-                fail(peek().place, "a structure cannot contain itself");
-            if (!atTypeName()) failHere("expected the type of a member");
+                fail(peek().place, msg::kStructRecursive);
+            if (!atTypeName()) failHere(msg::kExpectedMemberType(shown()));
             const Base base = takeBase();
             const bool handle = handle_;
             if (peek().kind == Tok::Identifier && peek(1).is("(")) {
@@ -72,11 +72,11 @@ void Parser::structure() {
                 skipMethod(begin);
                 continue;
             }
-            if (base == Base::Void) fail(s.place, "a member cannot be void");
+            if (base == Base::Void) fail(s.place, msg::kStructVoid);
             const ExprPtr space = declaredSpace(base);
             const Type group = dimensions({base, 0});
             do {
-                if (peek().kind != Tok::Identifier) failHere("expected the name of a member");
+                if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a member", shown()));
                 StructMember m;
                 m.place = peek().place;
                 m.name = std::string(take().text);
@@ -85,7 +85,7 @@ void Parser::structure() {
                 m.storage = s.storage;
                 if (accept("=")) m.init = inSpace(at("{") ? arrayList() : assignment(), base, space.get());
                 for (const StructMember& other : type.members)
-                    if (other.name == m.name) sources_.error(m.place, "there are two members called '" + m.name + "'");
+                    if (other.name == m.name) sources_.report(m.place, msg::kTwoMembers(m.name));
                 type.members.push_back(std::move(m));
             } while (accept(","));
             if (!at("}")) expectSemicolon("a member");
@@ -104,14 +104,14 @@ void Parser::structure() {
     if (const auto old = structs_.find(type.name); old != structs_.end() && !type.text.empty()) // two files brought the same one
         if (unit_.structs[size_t(old->second)].text == type.text) return;
     const bool empty = type.members.size() == inherited && type.base < 0 && methods.empty();
-    if (empty && sources_.errors() == errors) sources_.error(type.place, "structure '" + type.name + "' has no members");
+    if (empty && sources_.errors() == errors) sources_.report(type.place, msg::kStructEmpty(type.name));
     if (unit_.structs.size() >= size_t(limits::kStructs)) {
-        sources_.error(type.place, "a shader has at most " + std::to_string(limits::kStructs) + " structures");
+        sources_.report(type.place, msg::kStructCount(limits::kStructs));
         unit_.incomplete = true;
         return;
     }
     if (const auto old = structs_.find(type.name); old != structs_.end())
-        sources_.error(type.place, "structure '" + type.name + "' is defined already");
+        sources_.report(type.place, msg::kStructRedefined(type.name));
     structs_[type.name] = int(unit_.structs.size());
     const size_t index = unit_.structs.size(), behind = at_;
     unit_.structs.push_back(std::move(type));
@@ -152,14 +152,13 @@ void Parser::shaderObject() {
     s.name = std::string(take().text);
     owner_ = {&s.symbols, &s.nested};
     if (accept("(")) parameters(owner_, &s.parameters, nullptr);
-    if (!at("{")) failHere("expected '{' of class '" + s.name + "'");
+    if (!at("{")) failHere(msg::kExpectedToken("'{' of class '" + s.name + "'", shown()));
     s.body = make(StmtKind::Block, take().place);
     std::vector<StmtPtr> methods;
     inObject_ = true;
     while (!accept("}")) {
         if (peek().kind == Tok::End) {
-            sources_.error(peek().place, "expected '}' before the end of the file",
-                           "the class began at line " + std::to_string(s.place.line));
+            sources_.report(peek().place, msg::kExpectedBrace, "the class began at line " + std::to_string(s.place.line));
             unit_.incomplete = true;
             break;
         }
@@ -185,7 +184,7 @@ void Parser::shaderObject() {
             } else {
                 const bool starts = atTypeName() || at("public") || at("uniform") || at("varying") || at("constant") ||
                                     at("const") || at("output") || at("extern");
-                if (!starts) failHere("expected a member or a method of class '" + s.name + "'");
+                if (!starts) failHere(msg::kExpectedToken("a member or a method of class '" + s.name + "'", shown()));
                 member = declaration(true);
             }
             if (!member) continue;

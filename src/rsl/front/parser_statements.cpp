@@ -23,8 +23,7 @@ StmtPtr Parser::block() {
     statements(*b);
     if (!accept("}")) {
         if (lastError_ != at_ && !atCut())
-            sources_.error(peek().place, "expected '}' before the end of the file",
-                           "the block began at line " + std::to_string(b->place.line));
+            sources_.report(peek().place, msg::kExpectedBrace, "the block began at line " + std::to_string(b->place.line));
         lastError_ = at_;
         unit_.incomplete = true;
     }
@@ -73,7 +72,7 @@ StmtPtr Parser::statementOnce() {
         if (accept("else")) s->elseBody = statement();
         return s;
     }
-    if (w == "else") fail(t.place, "'else' without 'if'");
+    if (w == "else") fail(t.place, msg::kStrayElse);
     if (w == "plugin" && plugin()) return make(StmtKind::Block, t.place);
     if (w == "while") {
         auto s = make(StmtKind::While, take().place);
@@ -90,7 +89,7 @@ StmtPtr Parser::statementOnce() {
         if (peek().kind == Tok::Number) {
             const auto n = primary();
             if (n->number >= 1 && n->number <= 1000 && n->number == int(n->number)) s->levels = int(n->number);
-            else sources_.error(n->place, "the number of loops to leave must be a whole number from 1");
+            else sources_.report(n->place, msg::kLoopLevels);
         }
         expectSemicolon(w == "break" ? "break" : "continue");
         return s;
@@ -139,7 +138,7 @@ StmtPtr Parser::statementOnce() {
         (peek(2).is("=") || peek(2).is(";") || peek(2).is(",") || peek(2).is("["))) {
         const std::string near =
             nearestName(w, {"float", "color", "point", "vector", "normal", "matrix", "string", "uniform", "varying"});
-        fail(t.place, "'" + std::string(w) + "' is not a type",
+        fail(t.place, msg::kNotAType(w),
              near.empty() ? (w == "int" || w == "bool" ? "use float" : "") : "did you mean '" + near + "'?");
     }
     return effects();
@@ -149,7 +148,7 @@ StmtPtr Parser::statementOnce() {
 StmtPtr Parser::effects() {
     auto s = expressionStatement(effect());
     if (at(",")) {
-        sources_.warning(peek().place, "statements are separated by ';', not ','");
+        sources_.report(peek().place, msg::kCommaStatements);
         auto all = make(StmtKind::Block, s->place);
         all->body.push_back(std::move(s));
         while (accept(",")) all->body.push_back(expressionStatement(effect()));
@@ -162,7 +161,7 @@ StmtPtr Parser::effects() {
 StmtPtr Parser::declaration(bool member) {
     auto s = make(StmtKind::Declare, peek().place);
     Specifiers spec = specifiers();
-    if (!atTypeName()) failHere("expected a type");
+    if (!atTypeName()) failHere(msg::kExpectedType(shown()));
     Type type{takeBase(), 0};
     spec.handle = handle_;
     const ExprPtr space = declaredSpace(type.base);
@@ -175,9 +174,9 @@ StmtPtr Parser::declaration(bool member) {
         owner_.nested->push_back(std::move(f));
         return s;
     }
-    if (type.base == Base::Void) fail(s->place, "a variable cannot be void");
+    if (type.base == Base::Void) fail(s->place, msg::kVoidVariable);
     do {
-        if (!atName()) failHere("expected the name of a variable");
+        if (!atName()) failHere(msg::kExpectedName("a variable", shown()));
         const Token& name = takeName();
         ExprPtr length;
         const Type own = dimensions(type, member ? nullptr : &length);
@@ -192,7 +191,7 @@ StmtPtr Parser::declaration(bool member) {
             after_.push_back(front::run(std::move(e)));
         }
         if (accept("=")) {
-            if (spec.isExtern) sources_.error(name.place, "an extern variable has its value already and takes no other here");
+            if (spec.isExtern) sources_.report(name.place, msg::kExternValue);
             try {
                 s->declarators.back().init = inSpace(at("{") ? arrayList() : assignment(), type.base, space.get());
             } catch (const SyntaxError&) {
@@ -212,8 +211,8 @@ StmtPtr Parser::declaration(bool member) {
 StmtPtr Parser::forLoop() {
     const Place place = take().place;
     if (!accept("(")) {
-        if (peek().kind == Tok::End || at("{")) failHere("expected '(' after 'for'");
-        sources_.error(peek().place, "expected '(' after 'for' before " + shown()); // and on as if it stood there
+        if (peek().kind == Tok::End || at("{")) failHere(msg::kExpectedToken("'(' after 'for'", shown()));
+        sources_.report(peek().place, msg::kExpectedToken("'(' after 'for'", shown())); // and on as if it stood there
     }
     auto outer = make(StmtKind::Block, place);
     auto loop = make(StmtKind::For, place);
@@ -228,10 +227,10 @@ StmtPtr Parser::forLoop() {
                 break;
             }
         }
-        expect(";", "after the start of 'for'");
+        expectSeparator("the start of 'for'");
     }
     if (!at(";")) loop->condition = expression();
-    expect(";", "after the condition of 'for'");
+    expectSeparator("the condition of 'for'");
     while (!at(")")) {
         auto step = effect();
         if (loop->step) { // several, one after the other

@@ -1,5 +1,6 @@
 // RSL plug-ins as the front end sees them: descriptors like those of shadeops, found by name.
 #pragma once
+#include "rsl/messages/message.h"
 #include "shadeops/descriptor.h"
 #include <functional>
 #include <memory>
@@ -25,8 +26,9 @@ struct Plugin {
     }
 };
 
-/// The plug-in that `plugin "name"` in a file of folder `beside` means. Null: the reason, and what may help, in the strings.
-using PluginFinder = std::function<std::shared_ptr<const Plugin>(const std::string& name, const std::string& beside,
-                                                                 std::string& why, std::string& hint)>;
+/// The plug-in that `plugin "name"` in a file of folder `beside` means. Null: the reason in
+/// `why`, what may help in `hint`.
+using PluginFinder = std::function<std::shared_ptr<const Plugin>(const std::string& name, const std::string& beside, Raised& why,
+                                                                 std::string& hint)>;
 
 } // namespace alpenglow::rsl

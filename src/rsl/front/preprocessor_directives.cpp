@@ -35,13 +35,13 @@ void Preprocessor::directive(Place hash) {
     const std::string_view name = line[0].text;
     if (name == "ifdef" || name == "ifndef") {
         const bool known = line.size() > 1 && macros_.count(line[1].text);
-        if (line.size() < 2 && !skipping()) sources_.error(hash, "#" + std::string(name) + " needs a name");
+        if (line.size() < 2 && !skipping()) sources_.report(hash, msg::kNeedsName(name));
         open(hash, known == (name == "ifdef"));
     } else if (name == "if") {
         open(hash, skipping() ? false : condition(line, hash));
     } else if (name == "elif" || name == "else" || name == "endif") {
         if (ifs_.size() <= frames_.back().conditions) {
-            sources_.error(hash, "#" + std::string(name) + " without #if");
+            sources_.report(hash, msg::kStrayDirective(name));
             return;
         }
         If& f = ifs_.back();
@@ -50,7 +50,7 @@ void Preprocessor::directive(Place hash) {
             return;
         }
         if (f.sawElse) {
-            sources_.error(hash, "#" + std::string(name) + " after #else");
+            sources_.report(hash, msg::kAfterElse(name));
             return;
         }
         const bool outer = ifs_.size() < 2 || ifs_[ifs_.size() - 2].taking;
@@ -69,11 +69,11 @@ void Preprocessor::directive(Place hash) {
     } else if (name == "line" || line[0].kind == Tok::Number) {
         lineDirective(line, hash);
     } else if (name == "error") {
-        sources_.error(hash, "#error " + spelled(line, 1));
+        sources_.report(hash, msg::kErrorDirective(spelled(line, 1)));
     } else if (name == "warning") {
-        sources_.warning(hash, "#warning " + spelled(line, 1));
+        sources_.report(hash, msg::kWarningDirective(spelled(line, 1)));
     } else if (name != "ident" && name != "sccs") {
-        sources_.warning(line[0].place, "unknown directive '#" + std::string(name) + "' is ignored");
+        sources_.report(line[0].place, msg::kUnknownDirective(name));
     }
 }
 
@@ -81,8 +81,7 @@ void Preprocessor::pragma(const std::vector<Token>& line) {
     if (line.size() < 2 || !line[1].is("annotation")) return;
     const auto isText = [&](size_t i) { return line[i].kind == Tok::String; };
     if (line.size() < 4 || !(isText(2) || line[2].kind == Tok::Identifier)) {
-        sources_.warning(line[1].place, "#pragma annotation needs a key and a value: it is ignored",
-                         "#pragma annotation \"key\" \"value\"");
+        sources_.report(line[1].place, msg::kAnnotationPair);
         return;
     }
     bool texts = true; // a key without quotes is common
@@ -92,7 +91,7 @@ void Preprocessor::pragma(const std::vector<Token>& line) {
         if (isText(i)) value += stringValue(line[i].text); // adjacent texts are one
     }
     if (!texts && !isText(3)) value = spelled(line, 3);
-    if (!texts) sources_.warning(line[3].place, "the value of #pragma annotation stands in quotes; the line is taken as it is");
+    if (!texts) sources_.report(line[3].place, msg::kAnnotationQuotes);
     out_.annotations.push_back({out_.tokens.size(), isText(2) ? stringValue(line[2].text) : std::string(line[2].text), value});
 }
 
@@ -121,7 +120,7 @@ bool Preprocessor::condition(std::vector<Token> line, Place hash) {
 
 void Preprocessor::define(const std::vector<Token>& line, Place hash) {
     if (line.size() < 2 || line[1].kind != Tok::Identifier) {
-        sources_.error(hash, "#define needs a name");
+        sources_.report(hash, msg::kNeedsName("define"));
         return;
     }
     auto m = std::make_shared<Macro>();
@@ -135,10 +134,10 @@ void Preprocessor::define(const std::vector<Token>& line, Place hash) {
                 m->variadic = true;
                 m->parameters.push_back("__VA_ARGS__");
             } else if (line[i].kind == Tok::Identifier) m->parameters.push_back(line[i].text);
-            else sources_.error(line[i].place, "a macro parameter is a name, not '" + std::string(line[i].text) + "'");
+            else sources_.report(line[i].place, msg::kMacroParameter(line[i].text));
         }
         if (i == line.size()) {
-            sources_.error(hash, "the parameters of this macro have no ')'");
+            sources_.report(hash, msg::kMacroParameters);
             return;
         }
         ++i;
@@ -146,7 +145,7 @@ void Preprocessor::define(const std::vector<Token>& line, Place hash) {
     m->body.assign(line.begin() + long(i), line.end());
     const auto old = macros_.find(m->name);
     if (old != macros_.end() && spelled(old->second->body, 0) != spelled(m->body, 0))
-        sources_.warning(line[1].place, "macro '" + std::string(m->name) + "' is defined again with another meaning");
+        sources_.report(line[1].place, msg::kMacroRedefined(m->name));
     macros_[m->name] = m;
 }
 
@@ -161,24 +160,19 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
         name = name.substr(0, name.find('>'));
     }
     if (name.empty()) {
-        sources_.error(hash, "#include needs \"file\" or <file>");
+        sources_.report(hash, msg::kIncludeSyntax);
         out_.incomplete = true;
         return;
     }
     if (files_ > limits::kIncludeDepth) {
-        if (!nestedTooDeep_)
-            sources_.error(hash, "includes are nested more than " + std::to_string(limits::kIncludeDepth) + " deep");
+        if (!nestedTooDeep_) sources_.report(hash, msg::kIncludeDepth(limits::kIncludeDepth));
         nestedTooDeep_ = out_.incomplete = true; // once: a file that includes itself twice would say so thousands of times
         return;
     }
     if (++includes_ > limits::kIncludes || read_ > limits::kSourceBytes) {
         if (!stopped_)
-            sources_.error(
-                hash,
-                includes_ > limits::kIncludes
-                    ? "more than " + std::to_string(limits::kIncludes) + " files are included"
-                    : "the included files have more than " + std::to_string(limits::kSourceBytes) + " bytes together",
-                "does a file include itself? #pragma once, or #ifndef around its text, keeps it from being read again");
+            sources_.report(hash, includes_ > limits::kIncludes ? msg::kTooManyIncludes(limits::kIncludes)
+                                                                : msg::kIncludeBytes(limits::kSourceBytes));
         stopped_ = out_.incomplete = true;
         return;
     }
@@ -191,14 +185,14 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     // A path of another machine: the file's own name along the search path, then among the headers of our own.
     const std::string base = slashed.substr(slashed.find_last_of('/') + 1);
     if (base != slashed && includeFrom(folders, base)) {
-        sources_.warning(place, "'" + name + "' was not found; '" + out_.dependencies.back() + "' is used");
+        sources_.report(place, msg::kIncludeElsewhere(name, out_.dependencies.back()));
         return;
     }
     // A system that does not tell capitals from small letters found it.
     if (!shippedHeader(base) && includeAnyCase(folders, slashed)) {
-        sources_.warning(place, "'" + name + "' was not found; '" + out_.dependencies.back() + "' is used",
-                         "did you mean \"" + slashed.substr(0, slashed.size() - base.size()) +
-                             fs::path(out_.dependencies.back()).filename().string() + "\"?");
+        sources_.report(place, msg::kIncludeElsewhere(name, out_.dependencies.back()),
+                        "did you mean \"" + slashed.substr(0, slashed.size() - base.size()) +
+                            fs::path(out_.dependencies.back()).filename().string() + "\"?");
         return;
     }
     const bool standard = slashed.find("stdrsl/") != slashed.npos; // PRMan's own, whose names are those of others
@@ -210,9 +204,7 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     }
     out_.incomplete = true;
     if (!refused_.empty()) {
-        sources_.error(place,
-                       "'" + refused_ + "' is not read: it lies outside the shader's folder, and its name is none of a header",
-                       "headers end in .h, .sl or .inc; of a link the name of its target counts");
+        sources_.report(place, msg::kIncludeRefused(refused_));
         refused_.clear();
         return;
     }
@@ -277,7 +269,7 @@ std::string Preprocessor::withSlashes(std::string s) {
 void Preprocessor::lineDirective(const std::vector<Token>& line, Place hash) {
     const size_t i = line[0].kind == Tok::Number ? 0 : 1;
     if (i >= line.size() || line[i].kind != Tok::Number || line[i].text.size() > 8) {
-        sources_.error(hash, "#line needs a number");
+        sources_.report(hash, msg::kLineNumber);
         return;
     }
     Lexer& lexer = *frames_.back().lexer;

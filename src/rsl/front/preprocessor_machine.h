@@ -71,7 +71,7 @@ public:
                 pragma(line);
                 continue;
             }
-            sources_.warning(t.place, "_Pragma stands before a text in parentheses; it is ignored");
+            sources_.report(t.place, msg::kPragmaOperator);
             for (int i = 0; i < given; ++i) {
                 out_.tokens.push_back(parts[i]);
                 if (parts[i].kind == Tok::End) return std::move(out_);
@@ -107,8 +107,8 @@ private:
         if (f.lexer) {
             --files_;
             while (ifs_.size() > f.conditions) {
-                sources_.warning(ifs_.back().place, "this #if has no #endif",
-                                 ifs_.back().taking ? "it ends with its file" : "the rest of its file is skipped");
+                sources_.report(ifs_.back().place, msg::kUnfinishedIf,
+                                ifs_.back().taking ? "it ends with its file" : "the rest of its file is skipped");
                 ifs_.pop_back();
             }
         }
@@ -148,7 +148,7 @@ private:
     void count(size_t n) {
         produced_ += n;
         if (produced_ <= limits::kMacroTokens || stopped_) return;
-        sources_.error(last_, "macros expand to more than " + std::to_string(limits::kMacroTokens) + " tokens");
+        sources_.report(last_, msg::kTooManyTokens(limits::kMacroTokens));
         stopped_ = true;
         out_.incomplete = true;
         sources_.cut = true;
@@ -204,7 +204,7 @@ private:
         for (int depth = 0;;) {
             Token t = read();
             if (t.kind == Tok::End) {
-                sources_.error(call.place, "the call of macro '" + std::string(m.name) + "' has no closing ')'");
+                sources_.report(call.place, msg::kMacroCall(m.name));
                 sources_.cut = true;
                 return false;
             }
@@ -224,8 +224,7 @@ private:
         if (m.parameters.empty() && arguments.size() == 1 && arguments[0].empty()) arguments.clear();
         if (m.variadic && arguments.size() + 1 == m.parameters.size()) arguments.emplace_back();
         if (arguments.size() != m.parameters.size()) {
-            sources_.error(call.place, "macro '" + std::string(m.name) + "' takes " + std::to_string(m.parameters.size()) +
-                                           " arguments, not " + std::to_string(arguments.size()));
+            sources_.report(call.place, msg::kMacroArguments(m.name, m.parameters.size(), arguments.size()));
             // One mistake, one message: with the last argument in place of those missing the expansion is most likely well
             // formed.
             const std::vector<Token> filler = arguments.empty() ? std::vector<Token>{} : arguments.back();
@@ -236,7 +235,7 @@ private:
 
     std::vector<Token> expanded(const std::vector<Token>& list) {
         if (depth_ >= limits::kMacroDepth) {
-            sources_.error(last_, "macro calls are nested more than " + std::to_string(limits::kMacroDepth) + " deep");
+            sources_.report(last_, msg::kMacroDepth(limits::kMacroDepth));
             stopped_ = true;
             sources_.cut = true;
             return {};
@@ -314,7 +313,7 @@ private:
         Lexer lexer(sources_, call.place.file, sources_.keep(text));
         Token joined = lexer.next();
         if (joined.kind == Tok::Invalid || lexer.peek().kind != Tok::End) {
-            sources_.error(call.place, "'" + text.substr(0, 60) + "', pasted by ##, is not one token");
+            sources_.report(call.place, msg::kPaste(text.substr(0, 60)));
             out.back().kind = Tok::Invalid; // the parser passes over it without a word
             out.back().text = {};
             return;

@@ -39,7 +39,7 @@ void Checker::resolveTypes(ExprPtr& e, Type want, Handle handle) {
     }
     if (want.array != 0) return resolveArray(e, want, handle);
     if (info.array.array || info.listLength >= 0) {
-        sources_.error(e->place, "expected a " + named(want, handle) + ", not " + describe(*e));
+        sources_.report(e->place, msg::kTypeMismatch(named(want, handle), describe(*e)));
         e->type = want;
         return;
     }
@@ -55,7 +55,7 @@ void Checker::resolveTypes(ExprPtr& e, Type want, Handle handle) {
     if (best == Base::Void || (want.base == Base::String && !alike(info.handle, handle))) {
         std::string hint;
         if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple()) hint = componentHint(cheapest(info));
-        sources_.error(e->place, "expected a " + named(want, handle) + ", not " + describe(*e), hint);
+        sources_.report(e->place, msg::kTypeMismatch(named(want, handle), describe(*e)), hint);
         e->type = want;
         return;
     }
@@ -75,10 +75,9 @@ void Checker::warnOfNumbers() {
     for (const auto& [place, what] : madeNumbers_) {
         if (place[0] != 0) continue; // headers are others'
         const std::string type = toString({what.wanted, 0});
-        sources_.warning(
-            {place[0], place[1], place[2]},
-            what.name + "() is a float in arithmetic with a number; the " + type + " that is wanted has three alike components",
-            "'" + type + " " + what.name + "(...)' has three of its own; 'float " + what.name + "(...)' says that one is meant");
+        sources_.report({place[0], place[1], place[2]}, msg::kNumberCall(what.name, type),
+                        "'" + type + " " + what.name + "(...)' has three of its own; 'float " + what.name +
+                            "(...)' says that one is meant");
     }
 }
 
@@ -90,7 +89,7 @@ void Checker::resolveCheapest(ExprPtr& e) {
     }
     if (info.array.array) return resolveArray(e, info.array);
     if (info.listLength >= 0) {
-        sources_.error(e->place, "a list of elements {...} is of use only as the value of an array");
+        sources_.report(e->place, msg::kListPlace);
         return;
     }
     const Base b = cheapest(info);
@@ -125,7 +124,7 @@ void Checker::resolveCondition(ExprPtr& e) {
         }
     }
     if (best == Base::Void) {
-        sources_.error(e->place, describe(*e) + " cannot be a condition");
+        sources_.report(e->place, msg::kBadCondition(describe(*e)));
         e->type = {Base::Bool, 0};
         return;
     }
@@ -159,8 +158,7 @@ void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
     if (e->kind == ExprKind::ArrayList) {
         const int length = want.array > 0 ? want.array : std::max(1, info.listLength);
         if (int(e->args.size()) > length) {
-            sources_.error(e->args[size_t(length)]->place,
-                           std::to_string(e->args.size()) + " elements for an array of " + std::to_string(length));
+            sources_.report(e->args[size_t(length)]->place, msg::kTooManyElements(e->args.size(), length));
             e->args.resize(size_t(length));
         }
         for (auto& a : e->args) resolveTypes(a, want.element(), handle);
@@ -178,7 +176,7 @@ void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
     const Type have = info.array;
     const bool mixed = want.base == Base::String && !alike(info.handle, handle);
     if (have.base != want.base || mixed || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
-        sources_.error(e->place, "expected " + named(want, handle) + ", not " + describe(*e));
+        sources_.report(e->place, msg::kTypeMismatchArray(named(want, handle), describe(*e)));
         e->type = want;
         return;
     }
@@ -229,8 +227,7 @@ void Checker::resolveAs(ExprPtr& e, Base t) {
         if (e->varying && e->symbol->origin == Symbol::Origin::Global) readsPoint(*e, "'" + e->symbol->name + "'");
         return;
     case ExprKind::Index:
-        if (info.channel)
-            sources_.error(e->place, "a string has no elements; name[channel] has its place in texture() and its kin");
+        if (info.channel) sources_.report(e->place, msg::kNoElementsOfString);
         resolveIndexed(e->args[0]);
         resolveTypes(e->args[1], {Base::Float, 0});
         e->type = {t, 0};
@@ -428,9 +425,7 @@ void Checker::resolveAssign(ExprPtr& e) {
 /// `differs`: from point to point of one batch too.
 void Checker::readsPoint(const Expr& e, const std::string& what, bool differs) {
     if (function_ && differs) varyingFunctions_.insert(function_);
-    if (inConstruct())
-        sources_.warning(e.place, what + " differs from point to point, and construct() runs once for the whole shader",
-                         "begin() runs for the points that are shaded");
+    if (inConstruct()) sources_.report(e.place, msg::kConstructVarying(what));
 }
 
 bool Checker::inConstruct() const { return shader_ && shader_->object && function_ && function_->name == "construct"; }
@@ -441,11 +436,11 @@ void Checker::written(const Expr& variable) {
     while (root->kind == ExprKind::Index) root = root->args[0].get();
     const Symbol* s = root->symbol;
     if (!s) return;
-    const std::string name = "'" + s->name + "'";
+    const std::string& name = s->name;
     const bool constructs = inConstruct();
     if (s->isConstant && s->origin == Symbol::Origin::Local && !constructs) {
-        sources_.warning(variable.place, name + " is constant and is given another value here",
-                         shader_ && shader_->object ? "the members of a class that are constant get theirs in construct()" : "");
+        sources_.report(variable.place, msg::kConstantWritten(name),
+                        shader_ && shader_->object ? "the members of a class that are constant get theirs in construct()" : "");
         return;
     }
     switch (s->origin) {
@@ -455,19 +450,14 @@ void Checker::written(const Expr& variable) {
         if (s->writable || (foreignLight_ && (s->name == "Cl" || s->name == "Ol"))) break;
         // Old surfaces move P, as PRMan let them: the renderer displaces the primitive (world/displacement.cpp).
         if (kind_ == ShaderKind::Surface && s->name == "P") break;
-        if (s->storage == Storage::Uniform) sources_.error(variable.place, name + " cannot be written");
-        else
-            sources_.warning(variable.place, name + std::string(" is read-only") +
-                                                 (kind_ ? " in a " + std::string(toString(*kind_)) + " shader" : "") +
-                                                 "; the shader changes a copy of its own");
+        if (s->storage == Storage::Uniform) sources_.report(variable.place, msg::kReadOnly(name));
+        else sources_.report(variable.place, kind_ ? msg::kReadOnlyCopyIn(name, toString(*kind_)) : msg::kReadOnlyCopy(name));
         break;
     case Symbol::Origin::ShaderParameter:
-        if (!s->output && toldNotOutput_.insert(s).second)
-            sources_.warning(variable.place, "parameter " + name + " is not output; the shader changes a copy of its own");
+        if (!s->output && toldNotOutput_.insert(s).second) sources_.report(variable.place, msg::kNotOutput(name));
         break;
     case Symbol::Origin::FunctionParameter:
-        if (!s->output && toldNotOutput_.insert(s).second)
-            sources_.warning(variable.place, "parameter " + name + " is not output; the function changes a copy of its own");
+        if (!s->output && toldNotOutput_.insert(s).second) sources_.report(variable.place, msg::kNotOutputOfFunction(name));
         break;
     }
 }

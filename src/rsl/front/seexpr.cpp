@@ -1,4 +1,5 @@
 #include "rsl/front/seexpr.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 #include <cctype>
 #include <map>
@@ -114,9 +115,7 @@ private:
     static SeExprPart bracketed(std::string text, bool vec) { return {"(" + std::move(text) + ")", vec}; }
 
     void fail(const std::string& what) {
-        if (!failed_)
-            diagnostics_.report(Severity::Error, Rie::Syntax, place_,
-                                "this SeExpr expression is not read: " + what + " (character " + std::to_string(at_ + 1) + ")");
+        if (!failed_) diagnostics_.report(diagnostic(msg::kSeExprNotRead(what, at_ + 1), Rie::Syntax, place_));
         failed_ = true;
     }
     void blank() {

@@ -1,6 +1,6 @@
 #include "rsl/front/source.h"
 #include "base/limits.h"
-#include "rsl/front/messages.h"
+#include "rsl/front/complete.h"
 #include <algorithm>
 #include <map>
 #include <string>
@@ -47,8 +47,11 @@ std::string_view SourceSet::keep(std::string s) {
 
 bool SourceSet::tooMany() const { return errors_ >= limits::kFrontErrors; }
 
-void SourceSet::note(Severity severity, Place place, std::string message, std::string hint, std::vector<std::string> notes) {
+void SourceSet::report(Place place, const Raised& raised, std::string hint, std::vector<std::string> notes) {
     if (muted) return;
+    Severity severity = raised.message->severity;
+    std::string text = raised.text();
+    if (hint.empty()) hint = raised.message->hint;
     if (unused && severity >= Severity::Error) {
         severity = Severity::Warning;
         ++excused;
@@ -56,18 +59,13 @@ void SourceSet::note(Severity severity, Place place, std::string message, std::s
     }
     if (severity >= Severity::Error && tooMany()) return;
     // A function is checked once for each shader that calls it: its faults are reported once.
-    if (!seen_.insert({{place.file, place.line, place.column, int(severity)}, message}).second) return;
+    if (!seen_.insert({{place.file, place.line, place.column, int(severity)}, text}).second) return;
     if (severity >= Severity::Error) ++errors_;
-    messages_.push_back({place, severity, std::move(message), std::move(hint), std::move(notes)});
-    if (tooMany() && severity >= Severity::Error)
-        messages_.push_back(
-            {{place.file, place.line, place.column + 1}, Severity::Error, "too many errors; giving up on this file", {}, {}});
+    messages_.push_back({place, severity, raised, std::move(text), std::move(hint), std::move(notes)});
+    if (!tooMany() || severity < Severity::Error) return;
+    const Raised last = msg::kTooManyErrors;
+    messages_.push_back({{place.file, place.line, place.column + 1}, Severity::Error, last, last.text(), {}, {}});
 }
-
-void SourceSet::error(Place p, std::string m, std::string h, std::vector<std::string> notes) {
-    note(Severity::Error, p, std::move(m), std::move(h), std::move(notes));
-}
-void SourceSet::warning(Place p, std::string m, std::string h) { note(Severity::Warning, p, std::move(m), std::move(h)); }
 
 std::string SourceSet::line(Place p) const {
     if (p.file < 0 || p.file >= int(entries_.size()) || p.line < 1) return {};
@@ -100,18 +98,15 @@ void SourceSet::flush(Diagnostics& d) {
         if (++told > kAlike) continue;
         if (told == kAlike && all > kAlike)
             m.notes.push_back("there are " + std::to_string(all - kAlike) + " more of these in this line");
-        Diagnostic out;
+        Diagnostic out = diagnostic(m.raised, Rie::Syntax, {}, std::move(m.hint));
         out.severity = m.severity;
-        out.code = Rie::Syntax;
         if (m.place.file >= 0 && m.place.file < int(entries_.size())) out.place.file = entries_[m.place.file].name;
         out.place.line = m.place.line;
         out.place.column = m.place.column;
         if (kept < limits::kExcerptBytes) out.sourceLine = line(m.place);
         kept += out.sourceLine.size();
-        out.message = std::move(m.text);
-        out.hint = std::move(m.hint);
         out.notes = std::move(m.notes);
-        complete(out);
+        complete(out, &m.raised);
         d.report(std::move(out));
     }
     messages_.clear();

@@ -1,6 +1,7 @@
 // The texts of one compilation and the messages about them. Places of a program index this set.
 #pragma once
 #include "rsl/front/ast.h"
+#include "rsl/messages/messages.h"
 #include <deque>
 #include <set>
 #include <string>
@@ -23,8 +24,8 @@ public:
     /// Keeps a string alive as long as the set.
     std::string_view keep(std::string);
 
-    void error(Place, std::string message, std::string hint = {}, std::vector<std::string> notes = {});
-    void warning(Place, std::string message, std::string hint = {});
+    /// Notes a message: an error or a warning, as its table says. `hint` "": the message's own, if it has one.
+    void report(Place, const Raised&, std::string hint = {}, std::vector<std::string> notes = {});
     int errors() const { return errors_; }
     /// True once so many errors were found that going on is of no use.
     bool tooMany() const;
@@ -47,12 +48,12 @@ private:
     };
     struct Message {
         Place place;
-        Severity severity;
+        Severity severity; ///< that of `raised`, or less
+        Raised raised;
         std::string text, hint;
         std::vector<std::string> notes;
         size_t order = 0;
     };
-    void note(Severity, Place, std::string message, std::string hint, std::vector<std::string> notes = {});
     std::string line(Place) const;
     std::vector<Entry> entries_;
     std::deque<std::string> kept_;

@@ -37,11 +37,10 @@ void Lowering::checkType(size_t index) {
         }
         const size_t inner = size_t(int(m.type.base) - kFirstStruct);
         if (inner >= index) { // the parser knows only earlier ones; it could be itself after a second definition
-            sources_.error(m.place, "a structure cannot contain itself");
+            sources_.report(m.place, msg::kStructRecursive);
             m.type = {Base::Float, 0};
         } else if (all + members_[inner] > limits::kStructMembers) {
-            sources_.error(m.place, "a structure has no more than " + std::to_string(limits::kStructMembers) +
-                                        " members, those of its members included");
+            sources_.report(m.place, msg::kStructMembers(limits::kStructMembers));
             m.type = {Base::Float, 0};
         } else if (all += members_[inner]; !arrayPossible(m.type, m.place)) {
             m.type.array = 0;

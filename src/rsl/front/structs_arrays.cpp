@@ -83,16 +83,14 @@ const StructMember* Lowering::openMember(Type t) const {
 bool Lowering::arrayPossible(Type t, Place place) {
     if (t.array == 0) return true;
     if (const StructMember* open = openMember({t.base, 0})) {
-        sources_.error(place,
-                       "member '" + open->name + "' of " + shown({t.base, 0}) +
-                           " changes its length: there are no arrays of this structure",
-                       "with a length of its own, as in " + open->name + "[8], there are");
+        sources_.report(place, msg::kStructArray(open->name, shown({t.base, 0})),
+                        "with a length of its own, as in " + open->name + "[8], there are");
         return false;
     }
     for (const Leaf& l : leaves(t))
         if (l.type.array > limits::kShaderArray) {
-            sources_.error(place, "the length of an array must be between 1 and " + std::to_string(limits::kShaderArray),
-                           "this one has " + std::to_string(l.type.array) + " elements of '" + l.member->name + "'");
+            sources_.report(place, msg::kArrayLengthRange(limits::kShaderArray),
+                            "this one has " + std::to_string(l.type.array) + " elements of '" + l.member->name + "'");
             return false;
         }
     return true;
@@ -104,9 +102,7 @@ ExprPtr Lowering::bounded(ExprPtr index, int length, const Expr& array, int each
     const Place place = index->place;
     if (index->kind == ExprKind::Number && length > 0) {
         const double at = std::trunc(index->number), nearest = std::min(std::max(at, 0.0), double(length - 1));
-        if (at != nearest)
-            sources_.warning(place, "index " + fmt::format("{:.9g}", at) + " is outside the array of length " +
-                                        std::to_string(length) + "; the nearest element is taken");
+        if (at != nearest) sources_.report(place, msg::kIndexNearest(fmt::format("{:.9g}", at), length));
         return number(nearest, place);
     }
     ExprPtr last = number(length - 1, place);
@@ -141,9 +137,7 @@ void Lowering::elements(ExprPtr array, Type type, List& pre, List& out) {
     const int n = type.array;
     if (array->kind == ExprKind::ArrayList) {
         List& given = array->args;
-        if (int(given.size()) > n)
-            sources_.error(given[size_t(n)]->place,
-                           std::to_string(given.size()) + " elements for an array of " + std::to_string(n));
+        if (int(given.size()) > n) sources_.report(given[size_t(n)]->place, msg::kTooManyElements(given.size(), n));
         const ExprPtr last = array->text == "..." && !given.empty() ? clone(*given.back()) : nullptr;
         for (int k = 0; k < n; ++k) {
             if (k < int(given.size())) out.push_back(std::move(given[size_t(k)]));

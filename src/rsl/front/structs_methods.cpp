@@ -177,7 +177,7 @@ void Lowering::methodCall(Expr& e) {
     e.kind = ExprKind::ShadeopCall;
     const std::string name = methodNamed(t, e.text, e.args.size() - 1);
     if (t.array) {
-        sources_.error(e.place, "this is an array of " + shown(t), "its elements have methods: a[i]->" + e.text + "()");
+        sources_.report(e.place, msg::kStructIsArray(shown(t)), "its elements have methods: a[i]->" + e.text + "()");
     } else if (!name.empty()) {
         e.text = name;
         return;
@@ -189,7 +189,7 @@ void Lowering::methodCall(Expr& e) {
             if (structOf(s).base < 0) break;
         }
         const std::string near = nearestName(e.text, names);
-        sources_.error(e.place, shown(t) + " has no method '" + e.text + "'", near.empty() ? "" : "did you mean '" + near + "'?");
+        sources_.report(e.place, msg::kNoSuchMethod(shown(t), e.text), near.empty() ? "" : "did you mean '" + near + "'?");
     }
     e.text.clear(); // no more messages about this call
 }

@@ -196,7 +196,7 @@ void Lowering::shader(Shader& s) {
             const Place place = p.defaultValue ? p.defaultValue->place : symbol.place;
             rewrite(p.defaultValue);
             if (!temporaries.empty()) {
-                sources_.error(place, "a default value of a parameter uses a structure that a function gives");
+                sources_.report(place, msg::kStructDefaultCall);
                 p.defaultValue.reset();
                 temporaries.clear();
             }
@@ -210,7 +210,7 @@ void Lowering::shader(Shader& s) {
         if (p.defaultValue) valueOf(std::move(p.defaultValue), symbol.type, pre, values);
         else if (!symbol.type.array) defaults(symbol.type, place, pre, values);
         if (!pre.empty() || !temporaries.empty()) {
-            sources_.error(place, "the default of a structure is written with its constructor");
+            sources_.report(place, msg::kStructDefault);
             values.clear();
             temporaries.clear();
         }

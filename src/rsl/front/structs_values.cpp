@@ -24,11 +24,11 @@ void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
     const bool fits = derives(have, want.base) && // of one that extends it the part that it extends
                       (have.array != 0) == (want.array != 0) && (have.array == want.array || have.array < 0 || want.array < 0);
     if (!fits) {
-        if (isStruct(have)) sources_.error(place, "expected " + shown(want) + ", not " + shown(have));
+        if (isStruct(have)) sources_.report(place, msg::kStructOther(shown(want), shown(have)));
         else {
             const int errors = sources_.errors();
             rewrite(e);
-            if (sources_.errors() == errors) sources_.error(place, "expected a value of " + shown(want));
+            if (sources_.errors() == errors) sources_.report(place, msg::kStructValue(shown(want)));
         }
         for (size_t i = 0; i < count; ++i) out.push_back(variable("", place));
         return;
@@ -42,8 +42,7 @@ void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
 void Lowering::construct(Type type, Expr& e, List& pre, List& out) {
     const StructType& s = structOf(type);
     if (e.args.size() > s.members.size())
-        sources_.error(e.place, shown(type) + " has " + std::to_string(s.members.size()) + " members, not " +
-                                    std::to_string(e.args.size()));
+        sources_.report(e.place, msg::kStructMemberCount(shown(type), s.members.size(), e.args.size()));
     List rest;
     defaults(type, e.place, pre, rest);
     size_t at = 0;
@@ -63,7 +62,7 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
     const Type type = typeOf(*e);
     const Place place = e->place;
     if (!isStruct(type)) {
-        if (sources_.errors() == 0) sources_.error(place, "expected a structure");
+        if (sources_.errors() == 0) sources_.report(place, msg::kStructAny);
         return;
     }
     methodCall(*e);
@@ -199,7 +198,7 @@ void Lowering::assignTo(Expr& e, List& pre, List* value) {
     const Type type = typeOf(*e.args[0]);
     const Place place = e.place;
     if (e.op != ExprOp::Assign) {
-        sources_.error(place, "structures can only be assigned");
+        sources_.report(place, msg::kStructAssigned);
         return;
     }
     const bool simple = path(*e.args[1]) || type.array || e.args[1]->kind == ExprKind::ArrayList;
@@ -243,9 +242,9 @@ void Lowering::checkArguments(Expr& call) {
         have = typeOf(*wrong);
     }
     if (!wrong) return;
-    if (isStruct(wanted) && isStruct(have)) sources_.error(wrong->place, "expected " + shown(wanted) + ", not " + shown(have));
-    else if (isStruct(wanted)) sources_.error(wrong->place, "expected a value of " + shown(wanted));
-    else sources_.error(wrong->place, shown(have) + " cannot be used here");
+    if (isStruct(wanted) && isStruct(have)) sources_.report(wrong->place, msg::kStructOther(shown(wanted), shown(have)));
+    else if (isStruct(wanted)) sources_.report(wrong->place, msg::kStructValue(shown(wanted)));
+    else sources_.report(wrong->place, msg::kStructUse(shown(have)));
     call.text.clear(); // no more messages about this call
 }
 
@@ -336,7 +335,7 @@ void Lowering::hoist(ExprPtr& place, List& pre) {
 void Lowering::rewrite(ExprPtr& e) {
     if (!e) return;
     if (const Type t = typeOf(*e); isStruct(t)) {
-        sources_.error(e->place, shown(t) + " cannot be used here", "a member is read by '->'");
+        sources_.report(e->place, msg::kStructUse(shown(t)), "a member is read by '->'");
         e = variable("", e->place);
         return;
     }
@@ -345,7 +344,7 @@ void Lowering::rewrite(ExprPtr& e) {
     methodCall(*e);
     regions(*e);
     if (e->kind == ExprKind::Binary && e->op == ExprOp::Dot && isStruct(typeOf(*e->args[0]))) {
-        sources_.error(e->place, "'.' is the dot product", "a member of a structure is read by '->'");
+        sources_.report(e->place, msg::kMemberDot);
         e = variable("", e->place);
         return;
     }
@@ -358,10 +357,10 @@ void Lowering::rewrite(ExprPtr& e) {
                 for (const StructMember& x : structOf(t).members) names.push_back(x.name);
                 const std::string near = nearestName(e->text, names);
                 if (t.array)
-                    sources_.error(e->place, "this is an array of " + shown(t), "its elements have members: a[i]->" + e->text);
+                    sources_.report(e->place, msg::kStructIsArray(shown(t)), "its elements have members: a[i]->" + e->text);
                 else
-                    sources_.error(e->place, shown(t) + " has no member '" + e->text + "'",
-                                   near.empty() ? "" : "did you mean '" + near + "'?");
+                    sources_.report(e->place, msg::kNoSuchMember(shown(t), e->text),
+                                    near.empty() ? "" : "did you mean '" + near + "'?");
                 e = variable("", e->place);
                 return;
             }
@@ -376,8 +375,7 @@ void Lowering::rewrite(ExprPtr& e) {
                 e->height = std::max(e->height, e->args[0]->height + 1);
                 return;
             }
-            if (array && !pre.empty())
-                sources_.error(place, "an array in the result of a call must be stored in a variable first");
+            if (array && !pre.empty()) sources_.report(place, msg::kStructResultArray);
             sequence(e, std::move(pre));
             return;
         }
@@ -411,7 +409,7 @@ void Lowering::called(ExprPtr& e, List& pre, List after) {
     Type result = kNone;
     const auto [from, to] = functions_.equal_range(e->text);
     for (auto f = from; f != to; ++f) result = f->second.type;
-    if (result.array) sources_.error(place, "an array in the result of a call must be stored in a variable first");
+    if (result.array) sources_.report(place, msg::kStructResultArray);
     if (result == kNone) {
         pre.push_back(std::move(e));
         e = std::move(after.back());

@@ -34,23 +34,21 @@ SourcePlace sourcePlace(const std::vector<std::string>& files, const Place& p) {
     return {known ? files[static_cast<size_t>(p.file)] : std::string(), p.line, p.column};
 }
 
-void Builder::error(const Place& p, const std::string& text) {
-    failed_ = true;
-    diagnostics_.report(Severity::Error, Rie::Syntax, sourcePlace(*files_, shownPlace(p)), text);
-}
-
-void Builder::warn(const Place& p, const std::string& text) {
+void Builder::report(const Place& p, const Raised& message, std::string hint) {
     const SourcePlace at = sourcePlace(*files_, shownPlace(p));
-    diagnostics_.reportOnce(at.file + std::to_string(at.line) + ":" + std::to_string(at.column) + text,
-                            {Severity::Warning, Rie::Unimplement, at, text, {}, {}});
+    if (message.message->severity == Severity::Error) {
+        failed_ = true;
+        return diagnostics_.report(diagnostic(message, Rie::Syntax, at, std::move(hint)));
+    }
+    Diagnostic d = diagnostic(message, Rie::Unimplement, at, std::move(hint));
+    diagnostics_.reportOnce(at.file + std::to_string(at.line) + ":" + std::to_string(at.column) + d.message, std::move(d));
 }
 
 Inst* Builder::emit(Op op, Kind kind, std::vector<Inst*> args, int index) {
     if (k_.pool.size() > limits::kInlinedInstructions && !failed_) {
         failed_ = true;
-        diagnostics_.report(Severity::Error, Rie::Limit, sourcePlace(program_.files, shownPlace(place_)),
-                            "the shader is too large once its functions are inlined: more than " +
-                                std::to_string(limits::kInlinedInstructions) + " operations");
+        diagnostics_.report(diagnostic(msg::kShaderTooLarge(limits::kInlinedInstructions), Rie::Limit,
+                                       sourcePlace(program_.files, shownPlace(place_))));
     }
     Inst* i = k_.make(op, kind, std::move(args));
     i->index = index;

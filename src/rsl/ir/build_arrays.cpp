@@ -234,8 +234,7 @@ void Builder::refuseLonger(const Inst* a, const Place& place, const std::string&
     branch(
         emit(Op::Less, Kind::Bool, {constant(static_cast<float>(a->index)), lengthOf(a)}),
         [&] {
-            complain(place,
-                     where + " takes the first " + std::to_string(a->index) + " elements of this array only, and it has more");
+            complain(place, msg::kArrayPassed(where, a->index));
             return std::vector<Inst*>{};
         },
         [] { return std::vector<Inst*>{}; });
@@ -339,7 +338,7 @@ Inst* Builder::resizing(const Expr& e) {
     const Kind element = a->element;
     if (name == "capacity") return known ? get(known->reserved) : constant(static_cast<float>(arrayLength(a)));
     if (!known) {
-        warn(e.place, name + "(): the length of this array is fixed");
+        report(e.place, msg::kFixedLengthHere(name));
         return name == "pop" ? zero(element) : constant(0);
     }
     const Lengths l = *known;

@@ -82,10 +82,7 @@ std::vector<Inst*> Builder::distribution(const Distribution& m, const Distributi
 
 /// Reports, when the shader runs, that the name is no distribution; the value is 0.
 Inst* Builder::noSuchDistribution(Inst* name, const Expr& e) {
-    Site s;
-    s.op = "complaint";
-    const std::string text = noDistribution(e.shadeop->name, "");
-    s.strings = {text.substr(0, text.size() - 1), "", "\"; its value is 0; " + knownDistributions()};
+    Site s = complaint(msg::kNoSuchDistributionHere(e.shadeop->name, kWhenRun, knownDistributions()));
     std::vector<Inst*> args;
     addArgument(s, args, name, {Base::String, 0});
     place_ = e.place;
@@ -102,8 +99,8 @@ void Builder::checkDistribution(const Expr& e) {
         const Inst* name = expr(*p.value, Kind::String);
         if (name->op != Op::ConstString || name->text.empty()) continue;
         if (hemisphere ? name->text == "uniform" || name->text == "cosine" : isDistribution(name->text, true)) continue;
-        error(p.place, noDistribution(e.shadeop->name, name->text) + "; " +
-                           (hemisphere ? std::string("it is uniform or cosine") : knownDistributions()));
+        report(p.place, msg::kNoSuchDistribution(e.shadeop->name, name->text,
+                                                 hemisphere ? std::string("it is uniform or cosine") : knownDistributions()));
     }
 }
 
@@ -141,9 +138,7 @@ std::vector<Inst*> Builder::bsdf(const Expr& written) {
     const std::string known = !name ? "uniform" : name->op == Op::ConstString ? name->text : "";
     const Distribution* const m = findDistribution(known);
     if (name && name->op != Op::ConstString) { // one branch a name
-        if (parted)
-            warn(e.place,
-                 "bsdf() with parts needs a distribution that is known when the shader is compiled; all is in the first");
+        if (parted) report(e.place, msg::kBsdfPartsConstant);
         const std::function<Inst*(size_t)> from = [&](size_t i) -> Inst* {
             if (i == distributions().size()) return noSuchDistribution(name, e);
             const Distribution& one = distributions()[i];
@@ -154,12 +149,12 @@ std::vector<Inst*> Builder::bsdf(const Expr& written) {
         };
         result = {from(0)};
     } else if (!m) {
-        error(e.place, noDistribution("bsdf", known) + "; " + knownDistributions());
+        report(e.place, msg::kNoSuchDistribution("bsdf", known, knownDistributions()));
         result = {zero(Kind::Triple)};
     } else {
         result = distribution(*m, d);
         if (!parted) result = {sum(result)};
-        else if (m->parts == 1) warn(e.place, "bsdf(): \"" + known + "\" has no parts; all is in the first");
+        else if (m->parts == 1) report(e.place, msg::kBsdfParts(known));
     }
     // The plane of "horizon" lets through what lies on the same side of it as of the surface; a fibre has no surface.
     if (const auto h = d.values.find("horizon"); h != d.values.end() && (!m || m->surface)) {

@@ -167,8 +167,7 @@ Inst* Builder::shadeopCall(const Expr& e) {
 
 Inst* Builder::unavailable(const Expr& e) {
     // The checker reports shadeops of Lowering::Unavailable; here only what depends on the form of the call.
-    if (e.shadeop->lowering != Lowering::Unavailable)
-        warn(e.place, e.shadeop->name + "() in this form is not yet available; its result is 0");
+    if (e.shadeop->lowering != Lowering::Unavailable) report(e.place, msg::kFormNotAvailable(e.shadeop->name));
     if (e.type.array) return newArray(e.type.base, std::max(1, e.type.array));
     return zero(kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type));
 }
@@ -195,7 +194,7 @@ Inst* Builder::runtimeCall(const Expr& e) {
     }
     place_ = e.place;
     if (s.symbol.empty()) {
-        error(e.place, e.shadeop->name + "() has no code");
+        report(e.place, msg::kNoCode(e.shadeop->name));
         return zero(Kind::Float);
     }
     if (program_.rispecSpecular && e.shadeop->name == "specularbrdf") // its exponent is kSpecularExponent / roughness

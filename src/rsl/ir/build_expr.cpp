@@ -229,8 +229,7 @@ void Builder::assign(const Expr& l, Inst* value) {
         Inst* a = array(base);
         Inst* at = expr(*l.args[1], Kind::Float);
         if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
-            warn(l.args[1]->place, "index " + indexText(at->numbers[0]) + " is outside the array of length " +
-                                       std::to_string(arrayLength(a)) + "; the nearest element is taken");
+            report(l.args[1]->place, msg::kIndexNearest(indexText(at->numbers[0]), arrayLength(a)));
         if (a->op == Op::ArrayNew) storeElement(a, elementOf(a, at), coerce(value, a->element));
         return;
     }
@@ -375,8 +374,7 @@ Inst* Builder::expr(const Expr& e) {
             Inst* a = array(base);
             Inst* at = expr(*e.args[1], Kind::Float);
             if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
-                warn(e.args[1]->place, "index " + indexText(at->numbers[0]) + " is outside the array of length " +
-                                           std::to_string(arrayLength(a)) + "; the nearest element is taken");
+                report(e.args[1]->place, msg::kIndexNearest(indexText(at->numbers[0]), arrayLength(a)));
             const auto open = given_.find(a); // as long as the scene wants it: behind that there is nothing
             const bool behind = open != given_.end() && isConst(at) && at->numbers[0] >= static_cast<float>(open->second);
             if (behind) return zero(a->element);

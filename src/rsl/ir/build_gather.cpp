@@ -44,7 +44,7 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
     if (s.category) {
         const Inst* c = expr(*s.category);
         if (c->op == Op::ConstString) g.site.strings[0] = c->text;
-        else warn(s.place, "the category of gather must be known when the shader is compiled; \"illuminance\" is taken");
+        else report(s.place, msg::kGatherCategoryConstant);
     }
     const Kind kinds[] = {Kind::Triple, Kind::Triple, Kind::Float, Kind::Float};
     const Type types[] = {point, vector, real, real};
@@ -73,7 +73,7 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
                    wantsText = !(p.name == "bias" || p.name == "maxdist" || p.name == "samplebase" || p.name == "maxhitdist" ||
                                  p.name == "othreshold");
         if (text != wantsText) {
-            warn(p.place, "\"" + p.name + "\" of gather is a " + (wantsText ? "string" : "number") + "; this one is ignored");
+            report(p.place, msg::kGatherPairType(p.name, wantsText ? "string" : "number"));
             continue;
         }
         if (!text) v = coerce(v, p.name == "othreshold" ? Kind::Triple : Kind::Float);
@@ -93,15 +93,12 @@ void Builder::send(Site& site, std::vector<Inst*>& args, const Pair& p) {
     const PairName pair = PairName::parse(p.name);
     const Type type = p.value->type;
     if (pair.kind != PairName::Kind::Send) {
-        warn(p.place, "gather sends to parameters of \"send:surface:NAME\", \"send:displacement:NAME\", \"send:volume:NAME\" and "
-                      "\"send:light:NAME\": \"" +
-                          p.name + "\" is ignored");
+        report(p.place, msg::kGatherSend(p.name));
         return;
     }
     const bool handle = p.value->handle || (p.value->symbol && p.value->symbol->handle);
     if (handle || (pair.to == PairName::To::Light && type.base == Base::String)) {
-        warn(p.place,
-             std::string("gather sends no ") + (handle ? "shaders" : "strings to lights") + ": \"" + p.name + "\" is ignored");
+        report(p.place, handle ? msg::kGatherSendShader(p.name) : msg::kGatherSendString(p.name));
         return;
     }
     const auto give = [&](const PairName& name, Inst* v, Type t) {

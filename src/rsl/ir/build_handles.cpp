@@ -32,12 +32,9 @@ bool handsItselfOver(const Shader& s, const Program& p) {
 } // namespace
 
 /// An error that shows when the shader runs, where it comes to this.
-void Builder::complain(const Place& place, const std::string& text) {
-    Site s;
-    s.op = "complaint";
-    s.strings = {text};
+void Builder::complain(const Place& place, const Raised& message) {
     place_ = place;
-    call(Op::Service, std::move(s), {});
+    call(Op::Service, complaint(message), {});
 }
 
 /// What `this` is called: a co-shader by its handle, others by what they are (seed, format "%h").
@@ -68,7 +65,7 @@ Inst* Builder::handleText(const Expr& e) {
         place_ = e.place;
         return call(Op::Service, std::move(s), {})[0];
     }
-    warn(e.place, "'" + e.text.substr(1, e.text.size() - 2) + "' is null here: there is no such shader");
+    report(e.place, msg::kNullCaller(e.text.substr(1, e.text.size() - 2)));
     return leaves_.string("");
 }
 
@@ -201,7 +198,7 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
     place_ = handle.place;
     if (failed_) return zero(kind);
     if (handleDepth_ > limits::kCoShaderDepth) {
-        error(handle.place, "co-shaders call each other more than " + std::to_string(limits::kCoShaderDepth) + " deep");
+        report(handle.place, msg::kCoShaderDepth(limits::kCoShaderDepth));
         return zero(kind);
     }
     if (h->op == Op::ConstString) {
@@ -210,7 +207,7 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
                 certain_ = true;
                 return coerce(code(i), kind);
             }
-        warn(handle.place, "this handle is null here: no co-shader is bound to it");
+        report(handle.place, msg::kNullHandle);
         return zero(kind);
     }
     std::set<std::string> possible;
@@ -275,25 +272,20 @@ Inst* Builder::methodCall(const Expr& e) {
             const bool publicly = f && c.shader->publics.count(e.text);
             if (!certain_ && isSelf(i) && !publicly) return zero(kind); // another shader of the handle has it
             if (!certain_ && !publicly) { // who is meant shows when the shader runs, and whether the call is reached at all
-                complain(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" +
-                                      e.text + "' with " + std::to_string(e.args.size() - 1) +
-                                      " arguments; the call does nothing");
+                complain(e.place, msg::kNoPublicMethodHere(shownHandle(c.handle), c.shader->name, e.text, e.args.size() - 1));
                 return zero(kind);
             }
             if (!publicly) {
-                error(e.place, "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") has no public method '" +
-                                   e.text + "' with " + std::to_string(e.args.size() - 1) + " arguments");
+                report(e.place, msg::kNoPublicMethod(shownHandle(c.handle), c.shader->name, e.text, e.args.size() - 1));
                 return zero(kind);
             }
             if (openMethods_.count({i, f}) &&
                 !certain_) { // it may be another each time: whether it is a circle shows when the shader runs
-                complain(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) +
-                                      "' calls itself; the inner call does nothing: " + wayTo(i, *f));
+                complain(e.place, msg::kInnerCall(e.text, shownHandle(c.handle), wayTo(i, *f)));
                 return zero(kind);
             }
             if (openMethods_.count({i, f})) {
-                error(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) +
-                                   "' calls itself; recursion is not allowed: " + wayTo(i, *f));
+                report(e.place, msg::kCoShaderRecursion(e.text, shownHandle(c.handle), wayTo(i, *f)));
                 return zero(kind);
             }
             std::vector<const Expr*> arguments;
@@ -312,9 +304,8 @@ Inst* Builder::methodCall(const Expr& e) {
                                   (kindOf(given.type.element()) == kindOf(p.type.element()) ||
                                    (given.type == Type{Base::Float, 0} && !p.output && kindOf(p.type) != Kind::String));
                 if (!fits || (p.output && !variable)) {
-                    error(given.place, "argument " + std::to_string(n + 1) + " of method '" + e.text + "' of co-shader '" +
-                                           shownHandle(c.handle) + "' is " + (p.output ? "a variable of type " : "") +
-                                           toString(p.type) + ", not " + toString(given.type));
+                    const std::string type = (p.output ? "a variable of type " : "") + toString(p.type);
+                    report(given.place, msg::kMethodArgument(n + 1, e.text, shownHandle(c.handle), type, toString(given.type)));
                     return zero(kind);
                 }
                 if (p.output) held.emplace_back(*this, given);
@@ -366,8 +357,7 @@ Inst* Builder::methodCall(const Expr& e) {
                 if (f->parameters[n]->output && !f->parameters[n]->type.array && arguments[n]) assign(*arguments[n], outputs[n]);
             Inst* result = frame.result >= 0 ? get(frame.result) : zero(kind);
             if (result->kind != kind && !(result->kind == Kind::Float && kind != Kind::String)) {
-                error(e.place, "method '" + e.text + "' of co-shader '" + shownHandle(c.handle) + "' gives " +
-                                   toString(f->result) + ", not " + toString(e.type));
+                report(e.place, msg::kMethodType(e.text, shownHandle(c.handle), toString(f->result), toString(e.type)));
                 return zero(kind);
             }
             return result;

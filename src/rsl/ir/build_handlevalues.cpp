@@ -132,9 +132,7 @@ Inst* Builder::storeHandles(Inst* to, const Expr& e) {
     std::vector<Inst*> when;
     const std::vector<Inst*> all = handlesOf(e, &when);
     const size_t room = static_cast<size_t>(lengths(to) ? to->index : arrayLength(to));
-    const auto full = [&] {
-        complain(e.place, "more shaders than the array has room for: getshaders() gives the first " + std::to_string(room));
-    };
+    const auto full = [&] { complain(e.place, msg::kShadersRoom(room)); };
     if (when.empty()) {
         if (all.size() > room) full();
         for (size_t n = 0; n < std::min(all.size(), room); ++n)

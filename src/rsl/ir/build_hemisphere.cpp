@@ -142,7 +142,7 @@ Inst* Builder::tracedHemisphere(const Expr& e) {
     if (e.signature->parameters[0].type.base == Base::String) {
         if (const Inst* map = expr(*e.args[0], Kind::String);
             map->op != Op::ConstString || !(map->text.empty() || map->text == "raytrace"))
-            warn(e.args[0]->place, e.shadeop->name + "(): no file is read; rays are traced, which gives what it stands for");
+            report(e.args[0]->place, msg::kFileNotRead(e.shadeop->name));
         at = 1;
     }
     Hemisphere h;

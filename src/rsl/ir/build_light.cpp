@@ -31,7 +31,7 @@ void Builder::illuminance(const Stmt& s) {
         if (c->op == Op::ConstString) site.strings[0] = c->text;
         else give("category", c, {Base::String, 0});
         if (const std::string wrong = categoryError(site.strings[0]); !wrong.empty()) {
-            warn(s.place, "the category \"" + site.strings[0] + "\" cannot be read: " + wrong + "; all lights are taken");
+            report(s.place, msg::kLightCategory(site.strings[0], wrong));
             site.strings[0].clear();
         }
     }
@@ -46,7 +46,7 @@ void Builder::illuminance(const Stmt& s) {
         if (const PairName pair = PairName::parse(p.name); pair.kind == PairName::Kind::Send && pair.to == PairName::To::Light) {
             if (p.value->type.array) {
                 if (p.value->type.base == Base::String) {
-                    warn(p.place, "\"" + p.name + "\" sends an array of strings; it is not sent");
+                    report(p.place, msg::kLightPairStrings(p.name));
                     continue;
                 }
                 Inst* a = array(*p.value);
@@ -57,16 +57,14 @@ void Builder::illuminance(const Stmt& s) {
             }
             Inst* v = expr(*p.value);
             if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
-            if (v->kind == Kind::String && v->op != Op::ConstString)
-                warn(p.place, "\"" + p.name + "\" sends a string that is not known when the shader is compiled; it is not sent");
+            if (v->kind == Kind::String && v->op != Op::ConstString) report(p.place, msg::kSentString(p.name));
             else give(p.name, v, p.value->type);
             continue;
         }
         Inst* v = expr(*p.value);
         const bool cache = p.name == "lightcache";
         if (!cache || v->op != Op::ConstString || (v->text != "reuse" && v->text != "refresh")) {
-            warn(p.place, cache ? "\"lightcache\" is \"reuse\" or \"refresh\""
-                                : "the pair \"" + p.name + "\" means nothing to illuminance");
+            report(p.place, cache ? Raised(msg::kLightCache) : msg::kLightPair(p.name));
             continue;
         }
         site.names.push_back(p.name);
@@ -281,8 +279,7 @@ void Builder::lightBlock(const Stmt& s) {
     for (size_t n = 0; n < lightBlocks_.size() && index < 0; ++n)
         if (lightBlocks_[n].stmt == &s && !lightBlocks_[n].built) index = static_cast<int>(n);
     if (lightBlocks_.size() > limits::kLightBlocks || (index < 0 && lightBlocks_.size() == limits::kLightBlocks)) {
-        error(s.place, "a light has no more than " + std::to_string(limits::kLightBlocks) +
-                           " illuminate() and solar() blocks, those of functions once for each call");
+        report(s.place, msg::kLightBlocks(limits::kLightBlocks));
         return;
     }
     if (index < 0) index = addBlock(s); // in a method of a co-shader

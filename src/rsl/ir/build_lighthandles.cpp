@@ -25,22 +25,19 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
         branch(
             some,
             [&] {
-                complain(e.place,
-                         "the shader of this handle has no method '" + e.text + "' with these arguments, and the call gives 0");
+                complain(e.place, msg::kNoMethodOfHandle(e.text));
                 return std::vector<Inst*>{zero(Kind::Float)};
             },
             [&] { return std::vector<Inst*>{zero(Kind::Float)}; });
         return zero(Kind::Float);
     }
     if (shader_.kind == ShaderKind::Light) {
-        warn(e.place, "light() of another light is not yet available in a light shader; its variables keep what they hold");
+        report(e.place, msg::kLightOfLight);
         return zero(Kind::Float);
     }
     const auto colour = [&](const Expr& a) { return a.type == Type{Base::Color, 0} && a.kind == ExprKind::Variable; };
     const size_t asked = e.args.size() == 4 || (e.args.size() > 4 && colour(*e.args[3])) ? 4 : 3;
-    if (e.args.size() > asked && options_.coShaders.empty())
-        warn(e.args[asked]->place, "only class lights whose light() has these parameters give more than L, Cl and Ol; "
-                                   "for others the arguments keep what they hold");
+    if (e.args.size() > asked && options_.coShaders.empty()) report(e.args[asked]->place, msg::kLightCall);
     const Type vector{Base::Vector, 0}, real{Base::Float, 0};
     Site s = question("lightcall", e.place);
     std::vector<Inst*> args;
@@ -66,8 +63,7 @@ Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
         const Expr& to = *e.args[n];
         const bool variable = to.kind == ExprKind::Variable || to.kind == ExprKind::Index;
         if (!variable || to.type.array || kindOf(to.type) != Kind::Triple) {
-            error(to.place,
-                  "argument " + std::to_string(n) + " of light() is a variable of type " + (n == 1 ? "vector" : "color"));
+            report(to.place, msg::kLightArgument(n, n == 1 ? "vector" : "color"));
             return zero(Kind::Float);
         }
         const Held held(*this, to);
@@ -125,7 +121,7 @@ Inst* Builder::isLightCategory(const Expr& e) {
     Inst* category = expr(*e.args[0], Kind::String);
     place_ = e.place;
     if (lightDepth_ == 0) {
-        warn(e.place, "islightcategory() asks about the light of an illuminance loop; there is none here, and it gives 0");
+        report(e.place, msg::kOutsideIlluminance("islightcategory"));
         return constant(0);
     }
     Site s = question("islightcategory", e.place);

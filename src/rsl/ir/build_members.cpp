@@ -57,15 +57,27 @@ Type Builder::typeOfMember(const Expr& e) {
 }
 
 /// The shader of this turn of forHandle() lacks what is asked. Where the handle may mean another, which has it, that is said when
-/// the shader runs and comes here with this one; else it is an error. `lack`: what comes behind the shader's name.
-void Builder::lacks(const Place& place, size_t i, const std::string& lack, const std::function<bool(size_t)>& has) {
+/// the shader runs and comes here with this one; else it is an error.
+void Builder::lacks(const Place& place, size_t i, const Lack& lack, const std::function<bool(size_t)>& has) {
     if (!certain_ && isSelf(i)) return; // another shader of the handle has it
     const CoShader& c = *instances_[i].binding;
-    const std::string text = "co-shader '" + shownHandle(c.handle) + "' (" + c.shader->name + ") " + lack;
     bool another = c.light && !certain_; // lights of other kinds may have it, which are asked when the shader runs
     for (size_t n = 0; n < instances_.size() && !certain_; ++n) another |= n != i && has(n);
-    if (another) complain(place, text + "; the value is nothing");
-    else error(place, text);
+    if (another) complain(place, lack.whenRun);
+    else report(place, lack.error);
+}
+
+Builder::Lack Builder::noMember(size_t i, const std::string& name) const {
+    const CoShader& c = *instances_[i].binding;
+    const std::string handle = shownHandle(c.handle);
+    return {msg::kNoPublicMember(handle, c.shader->name, name), msg::kNoPublicMemberHere(handle, c.shader->name, name)};
+}
+
+Builder::Lack Builder::otherType(size_t i, const Symbol& has, const std::string& name, const std::string& wanted) const {
+    const CoShader& c = *instances_[i].binding;
+    const std::string handle = shownHandle(c.handle), type = toString(has.type);
+    return {msg::kMemberType(handle, c.shader->name, name, type, wanted),
+            msg::kMemberTypeHere(handle, c.shader->name, name, type, wanted)};
 }
 
 Inst* Builder::memberAccess(const Expr& e) {
@@ -84,10 +96,7 @@ Inst* Builder::memberAccess(const Expr& e) {
             if (c.light && !(isSelf(i) && !certain_) && (!fits(i) || s->output))
                 return lightMember(leaves_.string(c.handle), leaves_.string(e.text), kind, nullptr);
             if (!fits(i)) {
-                lacks(e.place, i,
-                      s ? "has '" + e.text + "' as " + toString(s->type) + ", not " + toString(type)
-                        : "has no public member '" + e.text + "'",
-                      fits);
+                lacks(e.place, i, s ? otherType(i, *s, e.text, toString(type)) : noMember(i, e.text), fits);
                 return zero(kind);
             }
             return memberValue(i, *s);
@@ -145,7 +154,7 @@ Inst* Builder::hasMethod(const Expr& e) {
     Inst* handle = expr(*e.args[0]);
     place_ = e.place;
     if (name->op != Op::ConstString) {
-        warn(e.place, "hasmethod() needs a name that is known when the shader is compiled; it gives 0");
+        report(e.place, msg::kHasmethodConstant);
         return constant(0);
     }
     const auto has = [&](const Shader& s) {
@@ -209,10 +218,8 @@ Inst* Builder::memberArray(const Expr& e) {
             Inst* from = given(i);
             if (!from) {
                 const Symbol* s = memberOf(i, e.text);
-                lacks(e.place, i,
-                      s ? "has '" + e.text + "' as " + toString(s->type) + ", not an array of " + toString(e.type.element())
-                        : "has no public member '" + e.text + "'",
-                      given);
+                const std::string wanted = "an array of " + toString(e.type.element());
+                lacks(e.place, i, s ? otherType(i, *s, e.text, wanted) : noMember(i, e.text), given);
                 return constant(0);
             }
             set(l.length, lengthOf(from));
@@ -259,7 +266,11 @@ Inst* Builder::memberLength(const Expr& e) {
         *e.args[0], Kind::Float,
         [&](size_t i) -> Inst* {
             if (Inst* v = found(i)) return lengthOf(v);
-            lacks(e.place, i, "has no public member '" + e.text + "' that is an array", found);
+            const CoShader& c = *instances_[i].binding;
+            const std::string handle = shownHandle(c.handle);
+            lacks(e.place, i,
+                  {msg::kNoPublicArray(handle, c.shader->name, e.text), msg::kNoPublicArrayHere(handle, c.shader->name, e.text)},
+                  found);
             return constant(0);
         },
         [&](Inst* handle) -> Inst* { // a light
@@ -303,10 +314,8 @@ Inst* Builder::memberElement(const Expr& e) {
                 Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), part(1), part(0)});
                 return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), part(2), low});
             }
-            lacks(e.place, i,
-                  s ? "has '" + member.text + "' as " + toString(s->type) + ", not an array of " + toString(type)
-                    : "has no public member '" + member.text + "'",
-                  has);
+            const std::string wanted = "an array of " + toString(type);
+            lacks(e.place, i, s ? otherType(i, *s, member.text, wanted) : noMember(i, member.text), has);
             return zero(kind);
         },
         [&](Inst* handle) { return lightMember(handle, leaves_.string(member.text), kind, nullptr, at); });
@@ -330,8 +339,7 @@ Inst* Builder::getVariable(const Expr& e) {
         const bool varying = s->origin == Symbol::Origin::ShaderParameter && s->storage == Storage::Varying;
         if (varying && to->symbol &&
             to->symbol->storage == Storage::Uniform) { // a varying parameter does not become a uniform variable, as in messages
-            warn(e.place, "getvar(): parameter '" + name->text + "' of '" + instances_[i].binding->shader->name +
-                              "' is varying and the variable is uniform: nothing is assigned, and the result is 0");
+            report(e.place, msg::kUniformGetvar(name->text, instances_[i].binding->shader->name));
             return constant(0);
         }
         if (s->type.array) return constant(takeArray(*to, memberValue(i, *s)) ? 1.0f : 0.0f);

@@ -60,16 +60,13 @@ bool Builder::nameArgument(const Shadeop& op, NamedArg& p, const std::string& te
         std::vector<std::string> names;
         for (const OptionalParameter& known : op.optional) names.push_back(known.name);
         const std::string near = nearestName(p.name, names);
-        warn(p.place, "'" + op.name + "' has no parameter \"" + p.name + "\"; it is ignored" +
-                          (near.empty() ? "" : "; did you mean \"" + near + "\"?"));
+        report(p.place, msg::kNoSuchParameter(op.name, p.name), near.empty() ? "" : "did you mean \"" + near + "\"?");
         return false;
     }
     p.output = o->output;
     if (takes(*o, *p.value)) return true;
-    const std::string name = "\"" + p.name + "\"";
-    error(p.place,
-          o->output ? name + " gives a " + toString(o->type) + ": it needs a variable of that type"
-                    : name + " of '" + op.name + "' is a " + toString(o->type) + ", and its value a " + toString(p.value->type));
+    report(p.place, o->output ? msg::kOutputPair(p.name, toString(o->type))
+                              : msg::kPairType(p.name, op.name, toString(o->type), toString(p.value->type)));
     return false;
 }
 
@@ -104,8 +101,7 @@ const Expr& Builder::withNames(const Expr& e) {
     Expr& call = *named_.back();
     for (size_t n = open.size(); n-- > 0;) {
         NamedArg& p = call.pairs[open[n].first];
-        warn(p.place, "the name of a parameter of '" + e.shadeop->name +
-                          "' is known only when the shader runs; this one is ignored, as the call gives an array");
+        report(p.place, msg::kMadeNameArray(e.shadeop->name));
         call.pairs.erase(call.pairs.begin() + static_cast<std::ptrdiff_t>(open[n].first));
     }
     return call;
@@ -122,10 +118,7 @@ Inst* Builder::callByNames(const Expr& e) {
         calls *= 1 + static_cast<size_t>(std::count_if(e.shadeop->optional.begin(), e.shadeop->optional.end(),
                                                        [&, n = at](const auto& o) { return takes(o, *call->pairs[n].value); }));
     if (calls > kCallsByName) {
-        error(e.place, "the names of " + std::to_string(open.size()) + " parameters of '" + e.shadeop->name +
-                           "' are known only when the shader runs: that would be " + std::to_string(calls) +
-                           " different calls, and " + std::to_string(kCallsByName) +
-                           " are the most; write some names as literals");
+        report(e.place, msg::kMadeNames(open.size(), e.shadeop->name, calls, kCallsByName));
         return zero(kindOf(e.type) == Kind::None ? Kind::Float : kindOf(e.type));
     }
     return chooseNames(std::move(call), open);
@@ -147,9 +140,7 @@ Inst* Builder::chooseNames(ExprPtr call, std::span<const std::pair<size_t, Inst*
         ExprPtr one = front::clone(*call);
         NamedArg& p = one->pairs[at];
         if (n == all.size()) {
-            Site s;
-            s.op = "complaint";
-            s.strings = {"'" + op.name + "' has no parameter of this type with the name \"", "", "\"; it is ignored"};
+            Site s = complaint(msg::kNoSuchParameterOfType(op.name, kWhenRun));
             place_ = s.place = keptPlace(p.place);
             std::vector<Inst*> args;
             addArgument(s, args, name, {Base::String, 0});
@@ -182,11 +173,10 @@ std::vector<Builder::Pair> Builder::pairsOf(const Stmt& s) {
         else if (p.named == NamedArg::Name::Written) all.push_back({p.name, p.value.get(), p.output, p.place});
         else if (name && name->op == Op::ConstString) {
             const bool output = name->text.find(':') != std::string::npos && !name->text.starts_with("send:");
-            if (output && p.value && !isPlace(*p.value)) error(p.place, "the value of \"" + name->text + "\" must be a variable");
+            if (output && p.value && !isPlace(*p.value)) report(p.place, msg::kOutputPairValue(name->text));
             else if (!name->text.empty()) all.push_back({name->text, p.value.get(), output, p.place});
         } else {
-            warn(p.place, "the name of a parameter of '" + std::string(s.kind == StmtKind::Gather ? "gather" : "illuminance") +
-                              "' is known only when the shader runs; this one is ignored");
+            report(p.place, msg::kMadeNameStatement(s.kind == StmtKind::Gather ? "gather" : "illuminance"));
         }
     }
     return all;

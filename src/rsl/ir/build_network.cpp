@@ -62,8 +62,7 @@ Inst* Builder::connectedOutput(const Connected& c, const Symbol& to) {
         if (!runPattern(i)) return nullptr;
         const Symbol* s = memberOf(i, c.output);
         const auto keeps = [&](const std::string& why) -> Inst* {
-            if (!c.member)
-                warn(to.place, "pattern '" + pattern.shader->name + "' " + why + ": '" + to.name + "' keeps its own value");
+            if (!c.member) report(to.place, msg::kPatternConnection(pattern.shader->name, why, to.name));
             return nullptr;
         };
         if (!s) return keeps("has no output '" + c.output + "'");

@@ -113,7 +113,7 @@ Inst* Builder::tracedMap(const Expr& e) {
         } else if (lightDepth_ > 0 && l != globals_.end()) {
             toLight = get(l->second);
         } else {
-            warn(e.place, "shadow(\"raytrace\") has no light to look at outside of lights and illuminance(); its value is 0");
+            report(e.place, msg::kShadowOutside);
             return zero(kindOf(e.type));
         }
         seen = rays(e, "transmission", {{middle, point}, {plus(middle, toLight), point}}, nullptr);

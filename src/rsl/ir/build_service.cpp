@@ -67,10 +67,7 @@ std::vector<Inst*> Builder::traceParts(const Expr& written) {
     }
     const Distribution* const m = findDistribution(name);
     if (!m || m->parts == 1) {
-        warn(e.place,
-             name.empty()
-                 ? "trace() with parts needs a distribution that is known when the shader is compiled; all is in the first"
-                 : "trace(): \"" + name + "\" has no parts; all is in the first");
+        report(e.place, name.empty() ? Raised(msg::kTracePartsConstant) : msg::kTraceParts(name));
         return {service(e, Op::Request)};
     }
     int count = m->parts;
@@ -254,7 +251,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
     static const std::set<std::string> kOfTheTurn = {"lightsource", "attribute", "shadername"};
     if (lightDepth_ == 0 && kOfTheTurn.count(op.name)) { // there is no light to ask about
         if (op.name == "lightsource" && shader_.kind != ShaderKind::Light)
-            warn(e.place, "lightsource() asks about the light of an illuminance loop; there is none here, and it gives 0");
+            report(e.place, msg::kOutsideIlluminance("lightsource"));
         mark(kPairOutside);
     }
     place_ = e.place;

@@ -41,11 +41,11 @@ Inst* Builder::spline(const Expr& e) {
                       : c.storage                     ? limits::kShaderArray
                                                       : limits::kSplinePoints;
     if (c.most > limit) {
-        error(e.place, "this spline has " + std::to_string(c.most) + " control points; the limit is " + std::to_string(limit));
+        report(e.place, msg::kSplinePointsMost(c.most, limit));
         return zero(c.kind);
     }
     if (c.most < 4) {
-        warn(e.place, "a spline needs at least four control points; this one is 0");
+        report(e.place, msg::kSplinePoints);
         return zero(c.kind);
     }
     if (name->op == Op::ConstString) {

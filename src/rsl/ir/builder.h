@@ -1,6 +1,7 @@
 // The builder's insides, shared by build*.cpp. Not for others.
 #pragma once
 #include "rsl/ir/build.h"
+#include "rsl/ir/complaint.h"
 #include "rsl/ir/edit.h"
 #include "shadeops/distributions.h"
 #include <cmath>
@@ -55,8 +56,8 @@ private:
     std::vector<Inst*> call(Op, Site, std::vector<Inst*> args);
     Inst* coerce(Inst*, Kind);
     Inst* coerce(Inst*, Type);
-    void error(const Place&, const std::string&);
-    void warn(const Place&, const std::string&);
+    /// An error ends the build; the same warning is reported once a place.
+    void report(const Place&, const Raised&, std::string hint = {});
 
     // build.cpp: variables
     int slot(const Symbol*);
@@ -249,7 +250,7 @@ private:
     bool everWritten(const Symbol&);
     void noteTexts(const Inst* array, const Symbol&, int length, std::span<const std::pair<std::string, std::string>> given);
     bool possibleTexts(const Inst*, std::set<std::string>& out, int depth = 0) const;
-    void complain(const Place&, const std::string&);
+    void complain(const Place&, const Raised&);
     Inst* handleText(const Expr&);
     Inst* answered(Site, std::vector<Inst*> args, Kind, const Expr* to);
     Inst* ofSurface(const Expr& handle, const std::string& name, Kind, const Expr* to);
@@ -279,7 +280,13 @@ private:
     const Function* methodOf(size_t instance, const Expr& call) const;
     const Symbol* memberOf(size_t instance, const std::string& name) const;
     Inst* memberValue(size_t instance, const Symbol&);
-    void lacks(const Place&, size_t instance, const std::string& lack, const std::function<bool(size_t)>& has);
+    /// What a co-shader lacks: the error, and what is said when the shader runs and comes there with this one.
+    struct Lack {
+        Raised error, whenRun;
+    };
+    Lack noMember(size_t instance, const std::string& name) const;
+    Lack otherType(size_t instance, const Symbol& has, const std::string& name, const std::string& wanted) const;
+    void lacks(const Place&, size_t instance, const Lack&, const std::function<bool(size_t)>& has);
     Inst* methodCall(const Expr&);
     Inst* memberAccess(const Expr&);
     Inst* memberArray(const Expr&);

@@ -5,7 +5,7 @@
 namespace alpenglow::rsl::jit {
 namespace {
 
-constexpr char kMagic[] = "alpenglow kernel 4\n";
+constexpr char kMagic[] = "alpenglow kernel 5\n";
 constexpr size_t kDigest = 16; // digits
 
 // One function a type describes both directions: `a(x)` writes x or reads it.
@@ -117,6 +117,7 @@ template <class A> void item(A& a, Diagnostic& d) {
     a(d.place.line);
     a(d.place.column);
     a(d.message);
+    a(d.id);
     a(d.hint);
     a(d.sourceLine);
 }

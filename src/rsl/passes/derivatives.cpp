@@ -1,6 +1,7 @@
 #include "rsl/passes/derivatives.h"
 #include "rsl/ir/edit.h"
 #include "rsl/kernel.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 #include <functional>
 #include <unordered_map>
@@ -39,12 +40,12 @@ struct Orders {
         }
     }
 
-    void warn(const Inst* i, const std::string& text) {
+    void warn(const Inst* i, const Raised& message) {
         if (quiet) return;
         const size_t f = static_cast<size_t>(i->place.file);
         const SourcePlace at{f < k.files.size() ? k.files[f] : std::string(), i->place.line, i->place.column};
-        diagnostics.reportOnce("derivative:" + at.file + std::to_string(at.line) + text,
-                               {Severity::Warning, Rie::Math, at, text, {}, {}});
+        diagnostics.reportOnce("derivative:" + at.file + std::to_string(at.line) + message.text(),
+                               diagnostic(message, Rie::Math, at));
     }
 
     void demand(Inst* i, uint8_t n) {
@@ -91,7 +92,7 @@ struct Orders {
         const Site& s = k.sites[static_cast<size_t>(i->site)];
         const DerivativeRule rule = s.shadeop ? s.shadeop->derivative : DerivativeRule::ZeroWarn;
         if (rule == DerivativeRule::ZeroWarn || (rule == DerivativeRule::Gradient && i->op != Op::Service)) // see gradients.h
-            warn(i, "the derivative of " + (s.op == "gatherturn" ? "what gather() brings" : s.op + "()") + " is taken as zero");
+            warn(i, msg::kZeroDerivative(s.op == "gatherturn" ? "what gather() brings" : s.op + "()"));
     }
 
     /// Derivatives taken in a region, and by the functions that it calls. The bodies of functions are their own matter.
@@ -161,7 +162,7 @@ struct Orders {
             switch (i->op) {
             case Op::Du:
             case Op::Dv:
-                if (n >= 2) warn(i, "a derivative of third order is taken as zero");
+                if (n >= 2) warn(i, msg::kThirdDerivative);
                 demand(i->args[0], static_cast<uint8_t>(std::min<int>(n + 1, 2)));
                 break;
             case Op::Select:
@@ -190,7 +191,7 @@ struct Orders {
                     for (size_t p = 0; p < r.params.size(); ++p)
                         if (r.params[p] == i) {
                             if (p >= fixed) construct(o, p - fixed, n);
-                            else warn(o, "the derivative of L, Cl and Ol is taken as zero");
+                            else warn(o, msg::kZeroDerivative("L, Cl and Ol"));
                         }
                 break;
             }

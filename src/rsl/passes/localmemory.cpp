@@ -1,6 +1,7 @@
 #include "rsl/passes/localmemory.h"
 #include "base/limits.h"
 #include "rsl/ir/edit.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 
 namespace alpenglow::rsl::ir {
@@ -30,10 +31,8 @@ void checkLocalMemory(const Kernel& k, Diagnostics& diagnostics) {
     });
     const Place& at = largest->place;
     const bool known = at.file >= 0 && static_cast<size_t>(at.file) < k.files.size();
-    diagnostics.report(Severity::Error, Rie::Limit, {known ? k.files[static_cast<size_t>(at.file)] : "", at.line, at.column},
-                       "the local arrays of \"" + k.name + "\" need " + std::to_string(bytes) + " bytes a point; the limit is " +
-                           std::to_string(limits::kShaderMemory),
-                       "make the arrays shorter, or compute their elements where they are needed");
+    diagnostics.report(diagnostic(msg::kShaderMemory(k.name, bytes, limits::kShaderMemory), Rie::Limit,
+                                  {known ? k.files[static_cast<size_t>(at.file)] : "", at.line, at.column}));
 }
 
 } // namespace alpenglow::rsl::ir

@@ -1,5 +1,6 @@
 #include "rsl/passes/zerodivision.h"
 #include "rsl/ir/edit.h"
+#include "rsl/messages/messages.h"
 #include <algorithm>
 
 namespace alpenglow::rsl::ir {
@@ -20,10 +21,8 @@ int warnOfZeroDivisions(Kernel& k, Diagnostics& diagnostics) {
         const SourcePlace at{f < k.files.size() ? k.files[f] : std::string(), i->place.line, i->place.column};
         const std::vector<float>& by = i->args[1]->numbers;
         const bool all = std::all_of(by.begin(), by.end(), [](float c) { return c == 0; });
-        const std::string text = all ? "a division by 0, which gives 0"
-                                     : "a division by a colour or vector with a component of 0, which gives 0 there";
         diagnostics.reportOnce("zero division:" + at.file + std::to_string(at.line) + ":" + std::to_string(at.column),
-                               {Severity::Warning, Rie::Math, at, text, {}, {}});
+                               diagnostic(all ? msg::kZeroDivision : msg::kZeroDivisionPart, Rie::Math, at));
     });
     return found;
 }

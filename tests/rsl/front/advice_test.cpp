@@ -1,7 +1,6 @@
 // Fix-its: what an editor does with them is a program without the fault. Hints where a line shows what was meant.
 #include "base/limits.h"
 #include "front_helpers.h"
-#include "rsl/front/messages.h"
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
@@ -143,7 +142,7 @@ TEST(Warnings, SayWhatIsThere) {
         const auto all = said("surface t(" + std::string(parameter) + ";) { }\n", false);
         ASSERT_EQ(all.size(), 1u) << parameter;
         EXPECT_NE(all[0].message.find(what), std::string::npos) << all[0].message;
-        EXPECT_STREQ(messageId(all[0].message), "no-default");
+        EXPECT_EQ(all[0].id, "no-default");
     }
 }
 

@@ -1,6 +1,6 @@
 // What helps with a message and can be seen in its line: hints, and fix-its that need more than the name in a hint.
 #pragma once
-#include "base/diagnostics.h"
+#include "rsl/messages/message.h"
 
 namespace alpenglow::rsl {
 
@@ -12,9 +12,9 @@ std::string suggestion(const std::string& hint);
 
 /// Adds a hint to a message of the compiler if its line shows what the author intended, and removes one that helps
 /// nobody. `written` is the token that begins at byte `at` of the line.
-void advise(Diagnostic&, const std::string& written, size_t at);
+void advise(Diagnostic&, const Raised&, const std::string& written, size_t at);
 
 /// Adds a fix-it where the cure is obvious.
-void addFix(Diagnostic&, const std::string& written, size_t at);
+void addFix(Diagnostic&, const Raised&, const std::string& written, size_t at);
 
 } // namespace alpenglow::rsl

@@ -1,0 +1,1 @@
+folder_library(rsl/messages DEPS base)

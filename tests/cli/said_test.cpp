@@ -312,6 +312,7 @@ TEST_F(Said, LoopsWithoutEnd) {
         EXPECT_EQ(times("expression:3:"), 1) << errors();
         EXPECT_TRUE(says("this loop is left after " + std::to_string(alpenglow::limits::kLoopIterations) + " turns at one point"))
             << errors();
+        EXPECT_TRUE(says("[loop-limit]")) << errors();
     }
     EXPECT_EQ(run("eval --setup 'float n = 0; while (n < 9999999) n += 1;' n"), "9999999\n");
     EXPECT_EQ(status, 0) << errors();

@@ -82,7 +82,8 @@ TEST(LocalArrays, SumOverTheLimit) {
         EXPECT_EQ(compiler.kernel(s, {}, d) != nullptr, fits) << n;
         EXPECT_EQ(d.errors(), fits ? 0 : 1) << all(d);
         if (fits) continue;
-        EXPECT_NE(all(d).find("bytes a point; the limit is " + std::to_string(limits::kShaderMemory)), std::string::npos)
+        EXPECT_NE(all(d).find("bytes a point; the limit is " + std::to_string(limits::kShaderMemory) + " [shader-memory]"),
+                  std::string::npos)
             << all(d);
         EXPECT_NE(all(d).find("big.sl:3:"), std::string::npos) << all(d);
     }

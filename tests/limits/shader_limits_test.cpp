@@ -135,7 +135,7 @@ TEST(ShaderLimits, InlinedInstructions) {
     static_assert(limits::kInlinedInstructions < size_t(1) << 20);
     EXPECT_EQ(messages(8), "");
     const std::string m = messages(20);
-    EXPECT_TRUE(says(m, "too large")) << m;
+    EXPECT_TRUE(says(m, "too large") && says(m, "[shader-too-large]")) << m;
     EXPECT_TRUE(says(m, "t.sl:")) << m;
 }
 

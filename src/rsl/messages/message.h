@@ -42,8 +42,6 @@ struct Raised {
     std::vector<std::string> arguments;
     /// The message's text with its arguments.
     std::string text() const;
-    /// The same, unless `message` is null.
-    explicit operator bool() const { return message != nullptr; }
 };
 
 /// What may stand for a "{}" of a message.

@@ -52,7 +52,7 @@ jit::KernelFile simpleKernel() {
     jit::KernelFile f;
     std::string error;
     EXPECT_TRUE(jit::generate(m.k, KernelOptions{}, f, error)) << error;
-    f.messages.push_back({Severity::Warning, Rie::Math, {"a.sl", 3, 4}, "message", "hint", "line"});
+    f.messages.push_back({Severity::Warning, Rie::Math, {"a.sl", 3, 4}, "message", "hint", "line", "zero-division"});
     return f;
 }
 
@@ -69,6 +69,7 @@ TEST(KernelFile, SurvivesPacking) {
     EXPECT_EQ(g->facts.direct[0].text(), "specular, line 12: it is squared");
     ASSERT_EQ(g->messages.size(), 1u);
     EXPECT_EQ(g->messages[0].place.column, 4);
+    EXPECT_EQ(g->messages[0].id, "zero-division");
     EXPECT_EQ(g->inputs[0].name, "x");
 }
 

@@ -154,7 +154,7 @@ TEST(Plausible, RaysWhereAnotherMaterialWantsThem) {
         shader m = getshader("material");
         Ci = indirectspecular(m);
         color close = indirectspecular(m, "bias", .01, "maxdist", .5, "label", "near", "subset", "", "hitmode", "default",
-                                       "hitsides", "both");
+                                       "hitsides", "both", "samplebase", 1, "integrationdomain", "sphere");
         if (comp(close, 0) != 0) Ci = -1;
         Oi = 1; } }
 )");

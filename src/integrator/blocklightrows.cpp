@@ -18,6 +18,7 @@ namespace alpenglow::integrator {
 bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
     const bool emitter = l.kind == LightKind::Area;
     if (!of || l.hazy || (emitter && !l.emitter)) return false;
+    if (!emitter && of.plan->readsNormal()) return false; // it is the shading normal of the lit point, which rows lack
     if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.isSky() || l.cone) return false;
     for (size_t i = 0; emitter && i < l.emitter->flat().size(); ++i)
         if (of.plan->overriddenBy(l.emitter->flatShape(i))) return false;

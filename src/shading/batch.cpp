@@ -180,6 +180,7 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
         };
         if (s.from == From::Variable) surfaceRows_ &= std::all_of(s.offset, s.offset + s.parts, inSurfaceRows) && !s.scalar;
         else surfaceRows_ &= s.from != From::Told && s.from != From::Nothing;
+        normal_ |= s.from == From::Variable && s.offset[0] == offsetof(ShadePoint, N);
         if (s.from == From::Parameter) lightRows_ &= !s.varying || s.name.name != kFaceIndex;
         else lightRows_ &= s.from == From::Variable && !s.scalar && inLightRows(s.offset[0]) && s.parts == 1;
         inputs_.push_back(std::move(s));

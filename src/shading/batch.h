@@ -58,6 +58,8 @@ public:
     uint32_t litNeeds() const { return litNeeds_; }
     /// Whether the kernel reads only LightRows and parameters, and no parameter is overridden by a primitive variable.
     bool readsLightRows() const { return lightRows_; }
+    /// Whether the kernel reads N.
+    bool readsNormal() const { return normal_; }
     /// Whether a variable of the shape overrides a parameter.
     bool overriddenBy(const geometry::Shape&) const;
     /// The same for SurfaceRows, without time and motion. Parameters overridden by primitive variables are allowed.
@@ -92,7 +94,7 @@ private:
     size_t rows_ = 0, numbers_ = 0; ///< in ParameterRows
     bool footprint_ = false;
     uint32_t needs_ = 0, litNeeds_ = 0;
-    bool lightRows_ = true, surfaceRows_ = true;
+    bool lightRows_ = true, surfaceRows_ = true, normal_ = false;
 };
 
 /// Inputs that most light kernels read: three rows each, one column for each point.

@@ -3,6 +3,7 @@
 #include "base/numberblock.h"
 #include "bsdf/lobelanes.h"
 #include "integrator/lightdirected.h"
+#include "integrator/rays.h"
 #include "lanes/blocks.h"
 #include "shading/point.h"
 #include "world/arealight.h"

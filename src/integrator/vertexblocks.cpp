@@ -1,4 +1,5 @@
 #include "integrator/vertexblocks.h"
+#include "base/numberlanes.h"
 #include <algorithm>
 
 namespace alpenglow::integrator {

@@ -54,12 +54,10 @@ void BlockVertices::beginExits(const BatchContext& c) {
     s.lanes = &lanes_.lobes[kind->index];
     s.rays = &kDiffuseKind;
     s.lighting = s.lights = s.diffuse = true;
-    s.clearCalls();
-    s.lobes.resize(std::max(s.lobes.size(), blocks_));
+    s.begin(blocks_);
     for (size_t b = 0; b < blocks_; ++b) {
         LobeBlock& l = s.lobes[b];
         l.asked = vertices_[b].points;
-        l.lights = 0;
         std::fill_n(l.lobe[kRowA], kBlock, 0.f);
         std::fill_n(l.lobe[kRowHasHorizon], kBlock, 0.f);
         for (size_t i = 0; i < size_t(kBlock); ++i) {

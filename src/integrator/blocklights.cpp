@@ -211,7 +211,7 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
     std::fill_n(sent_, kBlock, -1);
     const Lanes placed = l.asked;
     ShadowBlock common;
-    int32_t alone[kBlock];
+    int32_t shared[kBlock]; // sent_ of the lobes without options
     for (size_t k = 0; k < count_; ++k) {
         const Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
@@ -220,7 +220,7 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
         if (own) {
             common = shadow_;
             limitShadows(s, b, of, l);
-            std::swap_ranges(sent_, sent_ + kBlock, alone);
+            std::copy_n(sent_, kBlock, shared);
             std::fill_n(sent_, kBlock, -1);
         }
         const Lanes asked = l.asked;
@@ -243,7 +243,7 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
         }
         if (own) {
             shadow_ = common;
-            std::copy_n(alone, kBlock, sent_);
+            std::copy_n(shared, kBlock, sent_);
         }
     }
 }

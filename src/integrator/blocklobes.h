@@ -8,6 +8,7 @@
 #include "shading/point.h"
 #include "world/arealight.h"
 #include "world/sites.h"
+#include <algorithm>
 
 namespace alpenglow::integrator {
 
@@ -39,15 +40,17 @@ struct BlockLobes {
     std::vector<LobeBlock> lobes;
     std::vector<LightDirected> beside; ///< by point: light-directed sampling (lightdirected.h); empty: none
     std::vector<float> narrow;         ///< arguments, by block, for kernels whose strips are narrower than a block
-    std::vector<const float*> rows;    ///< by block: weight and arguments of its first point, `stride` floats apart
+    std::vector<const float*> rows;    ///< by block: arguments of its first point, `stride` floats apart
     int stride = 0;
     std::vector<RayOptions> options; ///< by point; empty: none
     /// By point, for further calls of a call site: how many of the earlier ones had a weight.
     std::vector<uint32_t> occurrence;
     uint32_t occurrenceAt(size_t point) const { return occurrence.empty() ? 0 : occurrence[point]; }
 
-    /// Forgets the calls of the previous batch.
-    void clearCalls() {
+    /// Makes room for a batch and forgets the previous one: no lobe is asked for.
+    void begin(size_t blocks) {
+        lobes.resize(std::max(lobes.size(), blocks));
+        for (size_t b = 0; b < blocks; ++b) lobes[b].asked = lobes[b].lights = lobes[b].elsewhere = lobes[b].ended = 0;
         walks = apart = direct = false;
         nth = 0;
         narrow.clear();

@@ -88,11 +88,9 @@ void BlockVertices::beginMedium(std::span<const Vec3> beside, float anisotropy) 
         s.lanes = &lanes_.lobes[s.kind->index];
         s.rays = &kDiffuseKind;
         s.lighting = s.lights = s.diffuse = true;
-        s.clearCalls();
-        s.lobes.resize(std::max(s.lobes.size(), blocks_));
+        s.begin(blocks_);
         for (size_t b = 0; b < blocks_; ++b) {
             LobeBlock& l = s.lobes[b];
-            l.asked = l.lights = 0;
             for (int q = 0; q < 3; ++q) {
                 std::fill_n(l.weight[q], kBlock, 1.f);
                 std::copy_n(rays_[b].direction[q], kBlock, l.lobe[kRowAxis + q]);

@@ -46,7 +46,7 @@ bool BlockVertices::readOptions(Site& s, BatchContext& c) {
                 info.trace->hemisphere ? number(info.rays->samples, 0) : std::max(1.f, number(info.rays->samples, 1));
             o.samples = occlusion_.samplesOf(samples, c.points[point].shape, info, c);
             if (o.importance > 0) continue;
-            counters_.ignored += uint64_t(o.samples);
+            ignored_ += uint64_t(o.samples);
             s.lobes[b].asked &= ~(1u << i);
         }
     return true;
@@ -63,10 +63,10 @@ void BlockVertices::limitShadows(const Site& s, size_t b, const BoundLight& of, 
         for (int q = 0; q < 3; ++q) shadow_.origin[q][i] = origin[q], shadow_.direction[q][i] = direction[q];
         shadow_.length[i] = l.emitter ? length(way) * (1 - 1e-6f) : of.isSky() ? o.maxDistance : l.far[i];
         const bool limited = l.emitter || (!of.isSky() && of.kind != LightKind::Distant);
-        // l.far is less than the distance of the light by kShort.
+        // Shadow rays end before a light without area by kShort, so the limit is shortened as well.
         constexpr float kShort = 1 - 1e-5f;
-        const float away = l.emitter ? length(way) : l.far[i] < 1e30f ? l.far[i] / kShort : l.far[i];
-        if (limited && away > o.maxDistance) l.asked &= ~(1u << i);
+        const float away = l.emitter ? length(way) : l.far[i], most = l.emitter ? o.maxDistance : o.maxDistance * kShort;
+        if (limited && away > most) l.asked &= ~(1u << i);
     }
 }
 

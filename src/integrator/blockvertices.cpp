@@ -93,6 +93,7 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
     indirect_ = {};
     apart_.clear();
     loops_.clear();
+    ignored_ = 0;
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
     vertices_.resize(std::max(vertices_.size(), blocks_));
@@ -102,6 +103,7 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
 bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
     if (!select(c)) return false;
+    counters_.ignored += ignored_;
     if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
     if (world_.settings_.firstSeen && !waits_ && !c.between) showAlbedo(c);
     lightDirections(c);
@@ -250,9 +252,7 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
         s.rays =
             store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, s.info->trace->apart});
     s.diffuse = s.rays->type == RayType::Diffuse;
-    s.lobes.resize(std::max(s.lobes.size(), blocks_));
-    for (size_t b = 0; b < blocks_; ++b) s.lobes[b].asked = s.lobes[b].lights = s.lobes[b].elsewhere = 0;
-    s.clearCalls();
+    s.begin(blocks_);
     s.walks = s.info->kind == SiteKind::Subsurface;
     s.apart = s.info->kind == SiteKind::Trace && s.info->trace->apart;
     s.direct = s.info->kind == SiteKind::Diffuse && s.info->trace && s.info->trace->apart;

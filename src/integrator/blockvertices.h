@@ -1,5 +1,6 @@
-// Vertices whose kernel requests lobes only, under path: from the kernel's requests to the next rays, 16 points at a time
-// (lanes/stages.h). All other batches are processed point by point (vertexsampling.h), with the same bits.
+// Vertices whose kernel requests lobes only: from the kernel's requests to the next rays, 16 points at a time (lanes/stages.h).
+// Under path one lobe of a point is followed, under the other hiders all. All other batches are processed point by point
+// (vertexsampling.h), with the same bits.
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/batchcontext.h"

@@ -50,7 +50,8 @@ protected:
     std::vector<float> lamp_;         ///< LightRows of these blocks
     std::vector<BlockPlaced> placed_; ///< by litBlocks_
     ScatterBlock next_{};
-    uint32_t turn_ = 0; ///< if all lobes are followed: which ray of each lobe
+    uint64_t ignored_ = 0; ///< rays that are not sent because their "weight" is 0
+    uint32_t turn_ = 0;    ///< if all lobes are followed: which ray of each lobe
     ShadowBlock shadow_{};
     int32_t sent_[kBlock];  ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
     alignas(64) Row whole_; ///< all ones

@@ -62,6 +62,7 @@ TEST(BlockCalls, FollowLoopsAndWalksBelowSurfaces) {
        + .3 * trace(P, n, "distribution", "oren-nayar", "roughness", .5, "samplelights", 1, "bias", .05 * some, "maxdist",
                     1 + 2 * v)
        + .2 * trace(P, reflect(normalize(I), n), "samplecone", .2, "samplearealights", 1, "maxdist", 2, "weight", color(some))
+       + .1 * trace(P, n, "distribution", "oren-nayar", "samplelights", 1, "maxdist", length(P - point(1, 2, 3)))
        + .2 * indirectdiffuse(P, n, 4, "maxdist", 3, "falloff", some, "bias", .01));
 })");
     writeShader("away", R"(surface away() {
@@ -71,12 +72,15 @@ TEST(BlockCalls, FollowLoopsAndWalksBelowSurfaces) {
          + .2 * trace(P + .1 * some * n, reflect(normalize(I), n));
 })");
     const std::string sky = "LightSource \"envlight\" 9 \"intensity\" .3\n";
+    // Points in fog and exits of walks use the rows of earlier batches again.
+    const std::string fog = "AttributeBegin\nSurface \"null\" Interior \"medium\" \"color scattering\" [.1 .12 .2]\n"
+                            "Translate 0 0 5\nSphere 7.5 -7.5 7.5 360\nAttributeEnd\n";
     const std::string shallow = "Attribute \"trace\" \"int maxdiffusedepth\" 1 \"int maxspeculardepth\" 1\n";
     Settings local = pathSettings();
     local.localRoulette = true;
     size_t turn = 0; // not nightly: a third of shader, scene and setting, each of them several times
     for (const char* shader : {"\"turns\"", "\"milky\"", "\"apart2\"", "\"near\"", "\"away\""})
-        for (const std::string& more : {std::string(), sky, shallow, sky + "Opacity .5 .6 .7\n"})
+        for (const std::string& more : {std::string(), sky, shallow, sky + "Opacity .5 .6 .7\n", fog})
             for (const Settings& s : {pathSettings(), local}) {
                 if (!chosen(turn++, 3)) continue;
                 const std::string rib = roomOf(shader, more);

@@ -280,7 +280,7 @@ private:
     const Function* methodOf(size_t instance, const Expr& call) const;
     const Symbol* memberOf(size_t instance, const std::string& name) const;
     Inst* memberValue(size_t instance, const Symbol&);
-    /// What a co-shader lacks: the error, and what is said when the shader runs and comes there with this one.
+    /// A member that a co-shader does not have. error: if the call is certain; whenRun: printed if the running shader reaches it.
     struct Lack {
         Raised error, whenRun;
     };

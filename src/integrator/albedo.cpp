@@ -9,7 +9,7 @@ namespace alpenglow::integrator {
 
 bool LobeSelection::albedoIsMeasured(const LobeVertex& l) const {
     return world_.settings_.firstSeen && !l.ownsTarget && !l.delta && l.below < 0 &&
-           (l.kind->distribution || l.rays->type != RayType::Diffuse);
+           integrator::albedoIsMeasured(*l.kind, *l.rays);
 }
 
 void LobeSelection::measureAlbedos() {

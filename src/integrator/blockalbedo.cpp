@@ -7,8 +7,6 @@
 
 namespace alpenglow::integrator {
 
-bool BlockVertices::albedoIsMeasured(const Site& s) { return !s.walks && (s.kind->distribution || !s.diffuse); }
-
 void BlockVertices::showAlbedo(BatchContext& c) {
     if (c.aside) return;
     for (size_t point = 0; point < points_; ++point) {
@@ -21,7 +19,8 @@ void BlockVertices::showAlbedo(BatchContext& c) {
             const LobeBlock& l = sites_[k].lobes[b];
             if (!(l.asked >> i & 1)) continue;
             const Color weight(l.weight[0][i], l.weight[1][i], l.weight[2][i]);
-            if (l.lobe[kRowDelta][i] != 0 || !albedoIsMeasured(sites_[k])) exact += weight * l.lobe[kRowAlbedo][i];
+            if (l.lobe[kRowDelta][i] != 0 || sites_[k].walks || !albedoIsMeasured(*sites_[k].kind, *sites_[k].rays))
+                exact += weight * l.lobe[kRowAlbedo][i];
             else measured.push_back(ray.weight * weight * measuredAlbedo(sites_[k], ray, point));
         }
         Color& albedo = accumulator_.results[size_t(ray.sample->path)]->albedo;

@@ -3,6 +3,7 @@
 #include "base/numberblock.h"
 #include "bsdf/lobelanes.h"
 #include "integrator/lightdirected.h"
+#include "integrator/rayoptions.h"
 #include "integrator/rays.h"
 #include "lanes/blocks.h"
 #include "shading/point.h"
@@ -11,17 +12,6 @@
 #include <algorithm>
 
 namespace alpenglow::integrator {
-
-/// Parameters of trace() for its ray, by point.
-struct RayOptions {
-    float bias = -1; ///< distance of the origin from the point; < 0: by the error bound of the hit
-    float maxDistance = 1e38f;
-    float importance = 1; ///< factor of PathRay::importance
-    int samples = 1;      ///< rays, if all lobes are followed
-    shading::Fade fade;
-    bool elsewhere = false; ///< the ray starts at `from`, so the lobe samples no lights
-    Vec3 from;
-};
 
 /// A call site of the kernel that requests lobes.
 struct BlockLobes {

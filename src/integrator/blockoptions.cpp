@@ -26,15 +26,7 @@ bool BlockVertices::readOptions(Site& s, BatchContext& c) {
         for (Lanes left = s.lobes[b].asked; left; left &= left - 1) {
             const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
             const auto row = [&](int r) { return s.rows[b][size_t(r) * size_t(s.stride) + i]; };
-            const auto number = [&](int r, float otherwise) { return r < 0 ? otherwise : row(r); };
-            RayOptions& o = s.options[point];
-            o.bias = number(info.rays->bias, -1);
-            o.maxDistance = std::min(number(info.rays->maxDistance, 1e38f), number(info.rays->maxHit, 1e38f));
-            if (o.maxDistance < 0) o.maxDistance = 1e38f; // PRMan: no limit
-            if (const int w = info.trace->weight; w >= 0)
-                o.importance = std::max(0.f, maxComponent(Color(row(w), row(w + 1), row(w + 2))));
-            if (const FadeSite& fade = info.trace->fade; fade.strength >= 0)
-                o.fade = {std::max(0.f, row(fade.strength)), o.maxDistance, number(fade.mode, 0) != 0};
+            RayOptions& o = s.options[point] = rayOptionsOf(info, row);
             if ((o.elsewhere = s.lobes[b].elsewhere >> i & 1)) {
                 if (surfaceAt(c, point).displaced) return false; // then the ray starts at the point after all
                 const int from = info.rows[0];
@@ -42,9 +34,7 @@ bool BlockVertices::readOptions(Site& s, BatchContext& c) {
             }
             if (o.importance > 0 && rules_.pickOne) continue;
             surfaces_.pointsOfRows(c);
-            const float samples =
-                info.trace->hemisphere ? number(info.rays->samples, 0) : std::max(1.f, number(info.rays->samples, 1));
-            o.samples = occlusion_.samplesOf(samples, c.points[point].shape, info, c);
+            o.samples = occlusion_.samplesOf(samplesAskedOf(info, row), c.points[point].shape, info, c);
             if (o.importance > 0) continue;
             ignored_ += uint64_t(o.samples);
             s.lobes[b].asked &= ~(1u << i);

@@ -104,7 +104,6 @@ private:
     void beginExits(const BatchContext&); // blockexits.cpp
     void walkBelow(size_t block, BatchContext&);
     // blockalbedo.cpp
-    static bool albedoIsMeasured(const Site&);
     void showAlbedo(BatchContext&);
     static Color measuredAlbedo(const Site&, const PathRay&, size_t point);
     // blockoptions.cpp

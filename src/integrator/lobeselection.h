@@ -17,6 +17,9 @@ class VertexLight;
 /// Sampled directions for the estimate of an albedo.
 inline constexpr uint32_t kAlbedoDraws = 8;
 
+/// Whether the output "albedo" of lobes of this kind that are no deltas has no closed form.
+inline bool albedoIsMeasured(const LobeKind& k, const RayKind& rays) { return k.distribution || rays.type != RayType::Diffuse; }
+
 class LobeSelection final : VertexStage {
 public:
     LobeSelection(const StageSet&, const VertexLobes&, PhotonScatter&);

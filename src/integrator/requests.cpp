@@ -11,6 +11,7 @@
 #include "integrator/mediastacks.h"
 #include "integrator/occlusioncalls.h"
 #include "integrator/photonstage.h"
+#include "integrator/rayoptions.h"
 #include "integrator/raystore.h"
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
@@ -162,8 +163,11 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
     if ((params.hasHorizon = s.rowHorizon >= 0)) params.horizon = directionOr(vector(s.rowHorizon, p.surface.n), p.surface.n);
     l.rays = raysOfTrace(s, f, p);
     l.lights = l.rays->asksLights;
-    l.bias = number(s.rays->bias, -1), l.base = number(s.rays->base, 0);
-    if (s.trace->weight >= 0) l.importance = std::max(0.f, maxComponent(vector(s.trace->weight, Color(1))));
+    const RayOptions options = rayOptionsOf(s, f);
+    l.bias = options.bias, l.base = number(s.rays->base, 0);
+    l.importance = options.importance;
+    l.maxDistance = options.maxDistance;
+    l.fade = options.fade;
     if (s.trace->map) l.tint = vector(s.trace->tint, Color(1));
     // From a point off the surface no light is sampled: emission counts in full.
     if (const Vec3 from = vector(s.rows[0], Vec3()), away = from - p.P;
@@ -173,12 +177,7 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
     }
     l.deltaLights = s.allLights;
     l.lobeOfShader = false;
-    l.maxDistance = std::min(number(s.rays->maxDistance, 1e38f), number(s.rays->maxHit, 1e38f));
-    if (l.maxDistance < 0) l.maxDistance = 1e38f; // PRMan: no limit
-    if (const FadeSite& fade = s.trace->fade; fade.strength >= 0)
-        l.fade = {std::max(0.f, f(fade.strength)), l.maxDistance, number(fade.mode, 0) != 0};
-    const float samples = s.trace->hemisphere ? number(s.rays->samples, 0) : std::max(1.f, number(s.rays->samples, 1));
-    l.samples = occlusion_.samplesOf(samples, p.shape, s, c);
+    l.samples = occlusion_.samplesOf(samplesAskedOf(s, f), p.shape, s, c);
     return l.importance > 0 || photons_.photonTrace();
 }
 

@@ -19,7 +19,7 @@ void BlockVertices::showAlbedo(BatchContext& c) {
             const LobeBlock& l = sites_[k].lobes[b];
             if (!(l.asked >> i & 1)) continue;
             const Color weight(l.weight[0][i], l.weight[1][i], l.weight[2][i]);
-            if (l.lobe[kRowDelta][i] != 0 || sites_[k].walks || !albedoIsMeasured(*sites_[k].kind, *sites_[k].rays))
+            if (l.lobe[kRowDelta][i] != 0 || sites_[k].walks || !albedoIsMeasured(*sites_[k].kind, sites_[k].raysAt(point)))
                 exact += weight * l.lobe[kRowAlbedo][i];
             else measured.push_back(ray.weight * weight * measuredAlbedo(sites_[k], ray, point));
         }

@@ -17,17 +17,19 @@ void BlockVertices::walkBelow(size_t b, BatchContext& c) {
         if (!s.walks) continue;
         surfaces_.pointsOfRows(c);
         const size_t point = b * kBlock + size_t(i);
-        const float* rows = s.rows[b] + i;
+        const LobeVertex* const request = s.requestAt(point);
         next_.goes &= ~(1u << i);
         subsurface_.walks.push_back({int(point),
-                                     int32_t(subsurface_.below.size()),
+                                     request ? request->below : int32_t(subsurface_.below.size()),
                                      {next_.weight[0][i], next_.weight[1][i], next_.weight[2][i]},
                                      c.targets[point],
                                      next_.vertex[i],
-                                     shareOf(c.rays[point]),
+                                     shareOf(s, point, c.rays[point]),
                                      vertices_[b].energyScale[i]});
-        subsurface_.below.push_back(
-            subsurface_.mediumOf(*s.info, c.points[point], [&](int row) { return rows[size_t(row) * size_t(s.stride)]; }));
+        const float* const rows = request ? nullptr : s.rows[b] + i;
+        if (rows)
+            subsurface_.below.push_back(
+                subsurface_.mediumOf(*s.info, c.points[point], [&](int row) { return rows[size_t(row) * size_t(s.stride)]; }));
     }
 }
 

@@ -27,7 +27,9 @@ BlockVertices::Guided::Point BlockVertices::Guided::pointOf(size_t block, int i,
         if (!(l.lights >> i & 1) || !(l.chosen[i] > 0)) continue;
         const Site& s = b_.sites_[k];
         const size_t point = block * kBlock + size_t(i);
-        if (!(b_.indirectOf(s, point) > 0) || (!s.options.empty() && s.options[point].fade.fades())) continue;
+        const RayOptions* const options = s.options.empty() ? nullptr : &s.options[point];
+        if (!(b_.indirectOf(s, point) > 0) || s.raysAt(point).gathersPhotons) continue;
+        if (options && (options->fade.fades() || options->base > 0)) continue;
         const float gives = luminance(absolute(weightOf(l))) * l.lobe[kRowAlbedo][i];
         if (gives > most) found.site = int(k), most = gives;
     }
@@ -89,8 +91,8 @@ void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext&
                      (s.lighting ? v.energyScale[i] : 1) * b_.indirectOf(s, at),
                      l.chosen[i],
                      l.lobe[kRowSpread][i],
-                     s.rays,
-                     b_.shareOf(from),
+                     &s.raysAt(at),
+                     b_.shareOf(s, at, from),
                      options.importance,
                      options.maxDistance},
                     points_[at].aim, w, f, b_.originOf(s, at, w), path,

@@ -29,6 +29,7 @@ void BlockVertices::endLobe(const Site& s, size_t b, const BatchContext& c) {
         n.occurrence[i] = s.occurrenceAt(b * kBlock + i) * 4096;
     render::drawBlocks({&n, 1});
     s.draw(b, some, n, drawn_);
+    drawAgain(s, b, some);
     for (int i = 0; i < kBlock; ++i)
         if (drawn_[kRowDrawn][i] == 0) some &= ~(1u << i);
     size_t points[kBlock];
@@ -43,9 +44,10 @@ void BlockVertices::endLobe(const Site& s, size_t b, const BatchContext& c) {
         const auto row3 = [&](const float(*r)[kBlock]) { return Vec3(r[0][i], r[1][i], r[2][i]); };
         const Vec3 w = row3(&drawn_[kRowDirection]);
         const Color weight = row3(l.weight) * (row3(&value_[kRowColour]) / pdf) * row3(v.weight);
-        LastRay& ray = ends_.emplace_back(int(point), s.rays, originOf(s, point, w), w, weight, c.targets[point]);
+        LastRay& ray = ends_.emplace_back(int(point), &s.raysAt(point), originOf(s, point, w), w, weight, c.targets[point]);
         ray.maxDistance = s.options.empty() ? 1e38f : s.options[point].maxDistance;
-        ray.share = shareOf(c.rays[point]);
+        ray.share = shareOf(s, point, c.rays[point]);
+        if (const LobeVertex* request = s.requestAt(point)) ray.lit = request->lit;
         ray.path = pathOf(s, false, point, w, c);
     }
 }

@@ -32,7 +32,7 @@ Lanes BlockLobes::spreads(size_t b) const {
     const LobeBlock& l = lobes[b];
     Lanes some = 0;
     for (int i = 0; i < kBlock; ++i) some |= Lanes(l.chosen[i] > 0 && l.lobe[kRowDelta][i] == 0) << i;
-    return walks ? 0 : some & l.asked & ~l.elsewhere;
+    return walks || (info && info->trace && info->trace->onlyLights) ? 0 : some & l.asked & ~l.elsewhere;
 }
 
 void BlockLobes::weighLightDirected(size_t b, Row* value) {

@@ -176,6 +176,9 @@ void BlockVertices::connect(const BoundLight& light, BatchContext& c) {
         if (lights_[b].asked) connectBlock(b, light, c);
 }
 
+/// Whether a call returns parts of its result.
+static bool returnsSums(const BlockLobes& s) { return s.info && s.info->kind == SiteKind::Trace && s.info->trace->sums; }
+
 /// Evaluates the lobes of a call site at `points` for their lights, into value_; adds the result to shadow rays that were already
 /// sent. pointOf: by lane, index in the batch. Returns the lanes whose ray is still to be sent.
 Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, const LightBlock& l,
@@ -186,8 +189,10 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
     Lanes some = stages_.contribute(points, lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting, value_[0],
                                     shadow_, &failed);
     for (; failed; failed &= failed - 1) accumulator_.notFinite(c, c.rays[pointOf[std::countr_zero(failed)]], uint32_t(s.number));
+    const bool sums = returnsSums(s) && l.emitter;
     for (; some; some &= some - 1) {
         const int lane = std::countr_zero(some);
+        if (sums) addUnshadowed(lobe, l, size_t(lane), c.targets[pointOf[lane]]);
         if (sent_[lane] < 0) {
             fresh |= 1u << lane;
             continue;
@@ -195,10 +200,21 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
         ShadowRay& first = shadows_.queue[size_t(sent_[lane])];
         const Color light{shadow_.light[0][lane], shadow_.light[1][lane], shadow_.light[2][lane]};
         const uint16_t path = pathOf(s, false, pointOf[lane], {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, c);
-        shadows_.more.push_back({light, c.targets[pointOf[lane]], shareOf(c.rays[pointOf[lane]]), false, path, first.more});
+        shadows_.more.push_back(
+            {light, c.targets[pointOf[lane]], shareOf(s, pointOf[lane], c.rays[pointOf[lane]]), sums, path, first.more});
         first.more = int32_t(shadows_.more.size()) - 1;
     }
     return fresh;
+}
+
+/// Adds the light of an emitter without occlusion to the sums of a waiting call.
+void BlockVertices::addUnshadowed(const LobeBlock& lobe, const LightBlock& l, size_t i, AccumulatorId target) {
+    TraceSums* const sums = accumulator_.sumsOf(target);
+    if (!sums) return;
+    const auto row3 = [&](const float(*r)[kBlock]) { return Color(r[0][i], r[1][i], r[2][i]); };
+    const float fcos = value_[kRowFcos][i];
+    sums->add(TraceSums::UnshadowedAreaLight,
+              row3(lobe.weight) * row3(l.Cl) * (row3(&value_[kRowColour]) / fcos) * (fcos / l.density[i]));
 }
 
 /// Makes the shadow rays of a block: one per point, for all of its lobes.
@@ -249,11 +265,15 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
 }
 
 /// RayExtra::share of the continuing ray.
-int32_t BlockVertices::shareOf(const PathRay& r) const { return waits_ ? -1 : store_.extraOf(r).share; }
+int32_t BlockVertices::shareOf(const Site& s, size_t point, const PathRay& r) const {
+    if (waits_) return -1;
+    const LobeVertex* const request = s.requestAt(point);
+    return request && request->share >= 0 ? request->share : store_.extraOf(r).share;
+}
 
 uint16_t BlockVertices::pathOf(const Site& s, bool delta, size_t point, const Vec3& w, const BatchContext& c) const {
     if (waits_ || !paths_.automaton) return 0;
-    return paths_.atLobe(*s.kind, *s.rays, delta, c.points[point], c.rays[point], w);
+    return paths_.atLobe(*s.kind, s.raysAt(point), delta, c.points[point], c.rays[point], w);
 }
 
 /// Sends the shadow ray of a lane of shadow_, from a point toward w; says: shadow parameters of the light, or null.
@@ -262,18 +282,19 @@ void BlockVertices::sendShadow(const Site& site, size_t point, size_t lane, cons
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
     sent_[lane] = int32_t(shadows_.queue.size());
     ShadowRay& s = shadows_.queue.emplace_back();
-    s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane],
-         row3(shadow_.light),  c.targets[point],        world_.shadesAtOpen_ ? 0 : c.rays[point].shutter(),
-         &c.rays[point]};
-    s.share = shareOf(c.rays[point]);
+    s = {row3(shadow_.origin), row3(shadow_.direction),
+         shadow_.length[lane], row3(shadow_.light),
+         c.targets[point],     world_.shadesAtOpen_ ? 0 : c.rays[point].shutter(),
+         &c.rays[point],       returnsSums(site) && of.kind == LightKind::Area};
+    s.share = shareOf(site, point, c.rays[point]);
     if (!world_.media_.empty()) s.media = media_.towards(c, int(point), w);
     s.path = pathOf(site, false, point, w, c);
     if (s.path) s.light = paths_.lights[size_t(&of - world_.lights_.data())];
     if (!says) return;
     if (says->shadowRadius > 0) { // to a point on the disk
         const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
-        const Vec2 u = store_.random(c.rays[point]).pair(c.rays[point].vertex, use, 0);
         const VertexBlock& v = vertices_[point / kBlock];
+        const Vec2 u = store_.random(c.rays[point]).pair(v.lightVertex[point % kBlock], use, 0);
         const Vec3 P(v.P[0][point % kBlock], v.P[1][point % kBlock], v.P[2][point % kBlock]);
         const Vec3 to = onShadowDisk(P - says->L, s.dir, says->shadowRadius, u) - s.origin;
         s.dir = normalizeOr(to, s.dir);

@@ -5,6 +5,7 @@
 #include "integrator/lightdirected.h"
 #include "integrator/rayoptions.h"
 #include "integrator/rays.h"
+#include "integrator/vertex.h"
 #include "lanes/blocks.h"
 #include "shading/point.h"
 #include "world/arealight.h"
@@ -33,6 +34,13 @@ struct BlockLobes {
     std::vector<const float*> rows;    ///< by block: arguments of its first point, `stride` floats apart
     int stride = 0;
     std::vector<RayOptions> options; ///< by point; empty: none
+    /// By point: the request, if it was made point by point (Requests::lobes); null: none. Empty: `rows` hold the arguments.
+    std::vector<const LobeVertex*> requests;
+    const LobeVertex* requestAt(size_t point) const { return requests.empty() ? nullptr : requests[point]; }
+    /// How many rays the request at a point asks for, if all lobes are followed.
+    int samplesAt(size_t point) const { return options.empty() ? 1 : options[point].samples; }
+    /// Rays that its lobe sends.
+    const RayKind& raysAt(size_t point) const { return requests.empty() || !requests[point] ? *rays : *requests[point]->rays; }
     /// By point, for further calls of a call site: how many of the earlier ones had a weight.
     std::vector<uint32_t> occurrence;
     uint32_t occurrenceAt(size_t point) const { return occurrence.empty() ? 0 : occurrence[point]; }
@@ -40,12 +48,14 @@ struct BlockLobes {
     /// Makes room for a batch and forgets the previous one: no lobe is asked for.
     void begin(size_t blocks) {
         lobes.resize(std::max(lobes.size(), blocks));
-        for (size_t b = 0; b < blocks; ++b) lobes[b].asked = lobes[b].lights = lobes[b].elsewhere = lobes[b].ended = 0;
+        for (size_t b = 0; b < blocks; ++b) lobes[b].forget();
         walks = apart = direct = false;
         nth = 0;
         narrow.clear();
         occurrence.clear();
         options.clear();
+        requests.clear();
+        rows.clear();
     }
     /// Points of a block whose lobe may be followed and is not a delta.
     Lanes spreads(size_t block) const;

@@ -1,6 +1,7 @@
 // Parameters of trace() that only some calls have, point by point: "bias", "maxdist", "weight", "falloff", an origin of its own.
 #include "integrator/blockvertices.h"
 #include "integrator/occlusioncalls.h"
+#include "integrator/raystore.h"
 #include "integrator/surfacepoints.h"
 #include <algorithm>
 #include <bit>
@@ -61,7 +62,7 @@ void BlockVertices::limitShadows(const Site& s, size_t b, const BoundLight& of, 
 }
 
 /// Applies the parameters to the next rays of a block.
-void BlockVertices::applyOptions(size_t b) {
+void BlockVertices::applyOptions(size_t b, const BatchContext& c) {
     RayBlock& r = rays_[b];
     for (Lanes left = next_.goes; left; left &= left - 1) {
         const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
@@ -71,6 +72,12 @@ void BlockVertices::applyOptions(size_t b) {
         for (int q = 0; q < 3; ++q) r.origin[q][i] = origin[q];
         r.maxDistance[i] = s.options[point].maxDistance;
         r.importance[i] *= s.options[point].importance;
+        if (!(s.options[point].base > 0)) continue;
+        const ShadePoint& p = c.points[point]; // the ray starts anywhere in the footprint
+        const Vec2 at = store_.random(c.rays[point]).pair(next_.vertex[i], kSampleBase, 0);
+        const Vec3 off =
+            (p.surface.dPdu * (p.du * (at.x - .5f)) + p.surface.dPdv * (p.dv * (at.y - .5f))) * s.options[point].base;
+        for (int q = 0; q < 3; ++q) r.origin[q][i] += off[q];
     }
 }
 
@@ -85,6 +92,7 @@ Vec3 BlockVertices::originOf(const Site& s, size_t point, const Vec3& w) const {
         if (o.bias >= 0) return at + w * o.bias;
         if (o.elsewhere) return at + w * geometry::roundingError(at);
     }
+    if (moved_) return surfaces_.leave(*moved_, point, w);
     return v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, n, v.error[i], w);
 }
 

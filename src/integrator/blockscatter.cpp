@@ -17,7 +17,7 @@ namespace alpenglow::integrator {
 
 void BlockVertices::scatter(BatchContext& c, Sched& sched) {
     turn_ = 0;
-    if (!rules_.pickOne) {
+    if (!rules_.pickOne || several_) {
         pairs_.resize(1);
         for (size_t b = 0; b < blocks_; ++b) scatterAll(b, c, sched);
         return;
@@ -44,7 +44,7 @@ void BlockVertices::scatterAll(size_t b, BatchContext& c, Sched& sched) {
         for (turn_ = 0; left; ++turn_) {
             for (int i = 0; i < kBlock; ++i) {
                 const bool goes = left >> i & 1;
-                const int samples = goes && !waits_ ? sites_[k].options[b * kBlock + size_t(i)].samples : 1;
+                const int samples = goes ? sites_[k].samplesAt(b * kBlock + size_t(i)) : 1;
                 next_.site[i] = goes ? int32_t(k) : -1;
                 next_.scale[i] = 1 / float(samples);
                 if (int(turn_) + 1 >= samples) left &= ~(1u << i);
@@ -76,18 +76,20 @@ void BlockVertices::drawDirections(size_t b) {
         const Site& s = sites_[size_t(next_.site[i])];
         n.stream[i] = uint32_t(s.number) << 1;
         n.occurrence[i] = s.occurrenceAt(b * kBlock + size_t(i)) * 4096;
-        if (rules_.pickOne || waits_) continue;
-        const auto samples = uint32_t(s.options[b * kBlock + size_t(i)].samples);
+        const auto samples = uint32_t(rules_.pickOne && !waits_ ? 1 : s.samplesAt(b * kBlock + size_t(i)));
+        if (samples == 1) continue;
         const render::SampleNumbers of = sampleOf(rays_[b], i).numbers.draw(turn_, samples);
         n.low[i] = of.low(), n.high[i] = of.high(), n.index[i] = of.index();
     }
     render::drawBlocks(std::span(pairs_).first(1));
+    idle_ = 0;
     for (size_t k = 0; k < count_; ++k) {
         const Lanes picked = pickedOf(next_, int(k));
         if (!picked) continue;
         Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
         s.draw(b, picked, n, drawn_);
+        drawAgain(s, b, picked);
         stages_.takeDirections(lobe, int(k), s.lighting, drawn_[0], next_);
     }
     for (size_t k = 0; k < count_; ++k) {
@@ -96,6 +98,8 @@ void BlockVertices::drawDirections(size_t b) {
         const LobeBlock& lobe = sites_[k].lobes[b];
         sites_[k].lanes->evaluate(lobe.lobe[0], picked, next_.direction[0], value_[0]);
         sites_[k].addLightDirected(picked, next_.direction, points, value_[kRowPdf]);
+        for (Lanes left = idle_ & picked; left; left &= left - 1)
+            for (int q = 0; q < 3; ++q) value_[kRowColour + q][std::countr_zero(left)] = 0;
         stages_.takeValues(lobe, int(k), value_[0], next_);
     }
 }
@@ -103,10 +107,10 @@ void BlockVertices::drawDirections(size_t b) {
 /// Draws the roulette numbers.
 void BlockVertices::throwDice(size_t b) {
     const VertexBlock& v = vertices_[b];
-    uint32_t keys[kMostSites];
-    for (size_t k = 0; k < count_; ++k) keys[k] = uint32_t(sites_[k].number);
-    stages_.name(v, keys, next_);
-    for (int i = 0; i < kBlock && (turn_ > 0 || !loops_.empty()); ++i) { // further calls in loops, further rays of a call
+    keys_.clear();
+    for (size_t k = 0; k < count_; ++k) keys_.push_back(uint32_t(sites_[k].number));
+    stages_.name(v, keys_.data(), next_);
+    for (int i = 0; i < kBlock && (turn_ > 0 || repeats_); ++i) { // further calls in loops, further rays of a call
         if (next_.site[i] < 0) continue;
         const Site& s = sites_[size_t(next_.site[i])];
         if (const uint32_t before = s.occurrenceAt(b * kBlock + size_t(i)) * 4096 + turn_)
@@ -125,16 +129,18 @@ void BlockVertices::throwDice(size_t b) {
 }
 
 void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
+    if (!requested_.empty()) examine(b, c);
     throwDice(b);
     for (Lanes bad = stages_.extend(vertices_[b], waits_ ? Roulette::None : roulette_, next_); bad; bad &= bad - 1) {
         const int lane = std::countr_zero(bad);
         accumulator_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
     }
+    std::fill_n(survived_, kBlock, 1.f);
     if (waits_ && rules_.roulette) endByChance(b);
     walkBelow(b, c);
     if (!next_.goes) return;
     turnRays(b, c);
-    applyOptions(b);
+    applyOptions(b, c);
     keepLobes(b, c);
     spawn(rays_[b], sched);
 }
@@ -172,7 +178,7 @@ void BlockVertices::turnRays(size_t b, BatchContext& c) {
         n.depthMax = std::max(n.depthMax, bounces);
         n.depthSum += 1; // over camera rays: mean number of bounces
         if (s.diffuse) continue;
-        if (s.rays->label == context_.totalReflection) ++n.totalReflected;
+        if (s.raysAt(b * kBlock + size_t(i)).label == context_.totalReflection) ++n.totalReflected;
         else ++(towards[i] * from[i] > 0 ? n.refracted : n.reflected);
     }
 }
@@ -185,10 +191,11 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
     for (Lanes left = next_.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         const Site& s = sites_[size_t(next_.site[i])];
-        const uint64_t kind = reinterpret_cast<uintptr_t>(s.rays);
+        const LobeVertex* const request = s.requestAt(b * kBlock + size_t(i));
+        const uint64_t kind = reinterpret_cast<uintptr_t>(&s.raysAt(b * kBlock + size_t(i)));
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
-        const bool sampled =
-            s.lights && !((next_.single | s.lobes[b].elsewhere) >> i & 1); // then emission that it hits is weighted by MIS
+        const bool sampled = (request ? request->lights : s.lights) &&
+                             !((next_.single | s.lobes[b].elsewhere) >> i & 1); // then emission that it hits is weighted by MIS
         r.pdf[i] = sampled ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
         r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
         if (const uint16_t path = uint16_t(r.path[i])) {
@@ -201,15 +208,16 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
             r.media[0][i] = uint32_t(media), r.media[1][i] = uint32_t(uint64_t(media) >> 32);
         }
         r.extra[i] = -1;
-        const int32_t share = shareOf(c.rays[b * kBlock + size_t(i)]);
+        const int32_t share = shareOf(s, b * kBlock + size_t(i), c.rays[b * kBlock + size_t(i)]);
         const float indirect = (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(s, b * kBlock + size_t(i));
         const bool fades = !s.options.empty() && s.options[b * kBlock + size_t(i)].fade.fades();
-        if (indirect == 1 && share < 0 && !c.between && !fades) continue;
+        if (indirect == 1 && share < 0 && !c.between && !fades && !request) continue;
         RayExtra extra;
         if (fades) extra.fade = s.options[b * kBlock + size_t(i)].fade;
         if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];
         extra.indirect = indirect;
         extra.share = share;
+        if (request) addToRay(*request, extra, i, c);
         r.extra[i] = store_.newExtra(extra);
     }
     guided_->keep(b, c);

@@ -30,14 +30,15 @@ bool isPlainLight(const BoundLight& l, bool chosen) {
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lastSkies_(s.lastSkies),
       lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), occlusion_(s.occlusion),
-      photons_(s.photons), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces),
-      vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+      photons_(s.photons), requests_(s.requests), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface),
+      surfaces_(s.surfaces), vertexLight_(s.vertexLight), unshadowed_(s), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
     const bool rules = rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
     usable_ = set.blocks && rules && lights && !world_.traceSubsets_ && !world_.globalMaps_;
     usable_ &= world_.accel_ != nullptr; // requires a complete world
+    noSample_ = &store_.noSample;
     guided_ = std::make_unique<Guided>(*this, s.guide);
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
@@ -93,6 +94,9 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
     indirect_ = {};
     apart_.clear();
     loops_.clear();
+    repeats_ = several_ = false;
+    moved_ = nullptr;
+    requested_.clear();
     ignored_ = 0;
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
@@ -102,7 +106,7 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
 
 bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
-    if (!select(c)) return false;
+    select(c);
     counters_.ignored += ignored_;
     if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
     if (world_.settings_.firstSeen && !waits_ && !c.between) showAlbedo(c);
@@ -126,7 +130,7 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
         guided_->mark(b, c);
         if (c.between) loadFlown(b, c);
         else if (!loadPoints(b, c)) return false;
-        if (waits_) nameLights(vertices_[b], uint32_t(c.emits[0].site));
+        if (waits_ && requested_.empty()) nameLights(vertices_[b], uint32_t(c.emits[0].site));
     }
     return true;
 }
@@ -142,6 +146,7 @@ void BlockVertices::takeRays(const RayBlock& rays, bool between) {
     }
     v.deep[0] = v.deep[1] = v.last;
     for (int k = 0; k < kBlock; ++k) {
+        if (int16_t(rays.path[k] >> 16) >= limits::kPathDepth) v.deep[0] |= 1u << k, v.deep[1] |= 1u << k;
         const PathSample& sample = sampleOf(rays, k);
         v.low[k] = sample.numbers.low();
         v.high[k] = sample.numbers.high();
@@ -176,11 +181,12 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
         const size_t i = first + std::min(k, n - 1); // repeats the last point
         const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
         const geometry::SurfacePoint& p = rows ? c.surfaces[i] : c.points[i].surface;
-        if (!(rows || c.points[i].P == p.P)) return false;
+        const Vec3& P = rows ? p.P : c.points[i].P;
+        if (!(P == p.P)) moved_ = &c;
         if (s.matte && c.rays[i].camera()) v.points &= ~(1u << k);
         endRays(b, int(k), s, false);
         for (int q = 0; q < 3; ++q) {
-            v.P[q][k] = p.P[q];
+            v.P[q][k] = P[q];
             v.n[q][k] = p.n[q];
             v.I[q][k] = rows ? c.ways[size_t(q) * points_ + i] : c.points[i].I[q];
             v.clear[q][k] = v.through ? c.clear[i][q] : 0;
@@ -188,7 +194,7 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
         v.error[k] = p.pError;
         v.bias[k] = s.bias;
     }
-    return true;
+    return !moved_ || !requested_.empty();
 }
 
 /// Counts the calls of a strip at each call site: in a loop one follows another.
@@ -227,7 +233,6 @@ bool BlockVertices::findSites(const BatchContext& c) {
             next = at + 1;
             continue;
         }
-        if (count_ == kMostSites) return false;
         if (count_ == sites_.size()) sites_.emplace_back();
         std::rotate(sites_.begin() + long(next), sites_.begin() + long(count_), sites_.begin() + long(count_) + 1);
         beginSite(sites_[next], e.site, c);
@@ -263,6 +268,7 @@ bool BlockVertices::request(BatchContext& c) {
     CallCount calls(c);
     for (size_t k = 0; k < count_; ++k)
         if (sites_[k].nth > 0) loops_.try_emplace(sites_[k].number, points_, 0u);
+    repeats_ = !loops_.empty();
     for (const EmitRecord& e : c.emits) {
         if (!c.bound->sites[size_t(e.site)].block) continue;
         calls.begins(e);
@@ -346,28 +352,27 @@ void BlockVertices::prepare() {
             s.lanes->prepare(l.lobe[0], l.asked);
             for (int i = 0; s.lights && i < kBlock; ++i)
                 l.lights |= Lanes((l.asked & ~vertices_[b].guided & ~l.elsewhere) >> i & (l.lobe[kRowDelta][i] == 0)) << i;
+            for (int i = 0; !s.requests.empty() && i < kBlock; ++i)
+                if (const LobeVertex* r = s.requests[b * kBlock + size_t(i)]; r && !r->lights) l.lights &= ~(1u << i);
         }
     }
 }
 
-bool BlockVertices::select(const BatchContext& c) {
-    SelectRules rules{0, world_.settings_.unbiased, 0, !rules_.pickOne, 0};
-    for (size_t k = 0; k < count_; ++k) {
-        rules.lighting |= uint32_t(sites_[k].lighting) << k;
-        rules.diffuse |= uint32_t(sites_[k].diffuse) << k;
-        rules.endless |= uint32_t(sites_[k].walks) << k;
-    }
-    std::vector<Selected> found(blocks_);
+void BlockVertices::select(const BatchContext& c) {
+    std::vector<SiteRules> of(count_);
+    for (size_t k = 0; k < count_; ++k) of[k] = {sites_[k].lighting, sites_[k].diffuse, sites_[k].walks};
+    // Sums of outputs need not conserve energy.
+    const SelectRules rules{of.data(), world_.settings_.unbiased || c.aside, !rules_.pickOne};
     for (size_t b = 0; b < blocks_; ++b) {
-        found[b] = stages_.select(vertices_[b], lobesOf(b).data(), int(count_), rules);
-        if (found[b].failed & vertices_[b].points) return false;
-    }
-    for (size_t b = 0; b < blocks_; ++b) counters_.depthCap += uint64_t(std::popcount(found[b].cut & vertices_[b].points));
-    for (size_t b = 0; b < blocks_; ++b)
+        const Selected found = stages_.select(vertices_[b], lobesOf(b).data(), int(count_), rules);
+        counters_.depthCap += uint64_t(std::popcount(found.cut & vertices_[b].points));
+        for (size_t k = 0; k < count_; ++k)
+            for (Lanes left = sites_[k].lobes[b].failed & vertices_[b].points; left; left &= left - 1)
+                accumulator_.notFinite(c, c.rays[b * kBlock + size_t(std::countr_zero(left))], uint32_t(sites_[k].number));
         for (const bool more : {true, false})
-            for (Lanes left = more ? found[b].bright : found[b].brightWithClear; left; left &= left - 1)
+            for (Lanes left = more ? found.bright : found.brightWithClear; left; left &= left - 1)
                 vertexLight_.tellScaled(world_.bindings_[size_t(c.bindings[b * kBlock + size_t(std::countr_zero(left))])], more);
-    return true;
+    }
 }
 
 } // namespace alpenglow::integrator

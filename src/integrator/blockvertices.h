@@ -6,6 +6,7 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 #include "integrator/stageset.h"
+#include "integrator/unshadowed.h"
 #include "integrator/vertexblocks.h"
 #include "lanes/stages.h"
 
@@ -13,7 +14,6 @@ namespace alpenglow::integrator {
 
 class BlockVertices final : Stage, VertexBlocks {
 public:
-    static constexpr size_t kMostSites = 32; ///< most requesting call sites of a kernel
     explicit BlockVertices(const StageSet&);
     ~BlockVertices();
     /// Whether all requests of this kernel, bound with these lights, can be processed in blocks.
@@ -33,6 +33,9 @@ public:
     /// The same for exits of subsurface walks, where light is gathered as by diffuse(). indirect: by point, factor of its ray's
     /// light.
     bool runExits(BatchContext&, std::span<const float> indirect, Sched&);
+    /// The same for requests that were made point by point (Requests::lobes), all of points of this batch; removes them. Returns
+    /// false, without effect, if they need vertexsampling.h.
+    bool runRequests(BatchContext&, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
     /// Samples one light for such points and evaluates their lobes toward it, to `found`. False: not possible, no effect.
     bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
@@ -57,7 +60,18 @@ private:
     bool requestOf(Site&, const EmitRecord&, const BatchContext&);
     void countCalls(Site&, const EmitRecord&, const BatchContext&, std::vector<uint32_t>& before);
     void prepare();
-    bool select(const BatchContext&);
+    void select(const BatchContext&);
+    // blockrequests.cpp
+    bool takesRequests(const BatchContext&) const;
+    void takeRequests(BatchContext&);
+    size_t siteOf(const LobeVertex&, size_t next, const BatchContext&);
+    void takeRequest(Site&, const LobeVertex&);
+    void readOptions(Site&);
+    void examine(size_t block, BatchContext&);
+    bool intersectsEmitter(const LobeVertex&, size_t point, const Vec3& w) const;
+    void drawAgain(const Site&, size_t block, Lanes);
+    Color throughputOf(int lane) const;
+    void addToRay(const LobeVertex&, RayExtra&, int lane, const BatchContext&);
     // blocklights.cpp
     void light(BatchContext&);
     void findLit(const BoundLight*);
@@ -74,11 +88,12 @@ private:
                           const Emitter::Sample&);
     void takeValues(const BoundLight&, const BatchContext&);
     void beginLights(const BoundLight&);
+    void addUnshadowed(const LobeBlock&, const LightBlock&, size_t lane, AccumulatorId);
     void connect(const BoundLight&, BatchContext&);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     Lanes contribute(const Site&, const VertexBlock&, const LobeBlock&, const LightBlock&, BatchContext&, const size_t* points);
     void sendShadow(const Site&, size_t point, size_t lane, const Vec3& w, const BoundLight&, const LightValue*, BatchContext&);
-    int32_t shareOf(const PathRay&) const;
+    int32_t shareOf(const Site&, size_t point, const PathRay&) const;
     /// PathRay::path of light that a lobe of a call site scatters toward w.
     uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
     // blocklightrows.cpp
@@ -110,7 +125,7 @@ private:
     bool hasOptions(const Site&) const;
     bool readOptions(Site&, BatchContext&);
     void limitShadows(const Site&, size_t block, const BoundLight&, LightBlock&);
-    void applyOptions(size_t block);
+    void applyOptions(size_t block, const BatchContext&);
     Vec3 originOf(const Site&, size_t point, const Vec3& w) const;
     // blockscatter.cpp
     void scatter(BatchContext&, Sched&);
@@ -131,14 +146,17 @@ private:
     MediumEvents& mediumEvents_;
     OcclusionCalls& occlusion_;
     PhotonStage& photons_;
+    Requests& requests_;
     RayStore& store_;
     ShadowRays& shadows_;
     SubsurfaceWalks& subsurface_;
     SurfacePoints& surfaces_;
     VertexLight& vertexLight_;
+    UnshadowedLight unshadowed_;
     const Stages& stages_;
     LobeLanesList lanes_;
-    bool usable_ = false; ///< the world and the settings allow blocks
+    std::vector<LobeVertex> requested_; ///< taken from Requests::lobes
+    bool usable_ = false;               ///< the world and the settings allow blocks
     Roulette roulette_ = Roulette::None;
     std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
     std::vector<char> inRows_;                                              ///< by light: can be sampled without points

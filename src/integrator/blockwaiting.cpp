@@ -23,7 +23,8 @@ bool BlockVertices::takes(const BatchContext& c, std::span<KernelStrip* const> s
         if (r.site != strips[0]->request().site || !site.block || site.kind != SiteKind::Trace || r.gather) return false;
         for (const int lane : r.memory->laneOf) {
             const int samples = site.rays->samples;
-            const bool several = samples >= 0 && r.memory->in[size_t(samples) * size_t(r.lanes) + size_t(lane)] > 1;
+            const bool several =
+                site.trace->hemisphere || (samples >= 0 && r.memory->in[size_t(samples) * size_t(r.lanes) + size_t(lane)] > 1);
             if (several || r.memory->occurrences[size_t(r.site) * 64 + size_t(lane)] != 0) return false;
         }
         asked += r.memory->laneOf.size();
@@ -79,8 +80,9 @@ void BlockVertices::endByChance(size_t b) {
     for (Lanes left = next_.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         const uint32_t known = r.flags[i] & kAskedBits, before = before_[b * kBlock + size_t(i)];
-        r.flags[i] = (r.flags[i] & ~kAskedBits) | std::min<uint32_t>(std::max(known, before + 1), kAskedBits);
-        const float q = rouletteWaiting(vertices_[b].bounces[i], known, before, 1);
+        const auto count = uint32_t(sites_[size_t(next_.site[i])].samplesAt(b * kBlock + size_t(i)));
+        r.flags[i] = (r.flags[i] & ~kAskedBits) | std::min<uint32_t>(std::max(known, before + count), kAskedBits);
+        const float q = survived_[i] = rouletteWaiting(vertices_[b].bounces[i], known, before, count);
         if (q < 1 && !(next_.dice[i] < q)) next_.goes &= ~(1u << i);
         for (int k = 0; k < 3; ++k) next_.weight[k][i] = next_.weight[k][i] / q;
     }

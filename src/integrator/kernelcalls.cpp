@@ -21,15 +21,12 @@ void failed(rsl::KernelCall* call) noexcept {
     call->stop = &kEnd;
 }
 
-/// Reserves memory for another request of a kernel that does not wait. Throws LimitReached if there is too little;
-/// Pipeline::trace() then repeats the call with fewer points at a time.
-void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64_t mask) {
-    const size_t held = c.arena.size() * sizeof(float) + c.emits.size() * sizeof(EmitRecord) + c.emitted * sizeof(LobeVertex);
-    c.emitted += size_t(std::popcount(mask));
-    if (held + rows * size_t(lanes) * sizeof(float) <= limits::kRequestBytes) return;
+} // namespace
+
+void endTooManyRequests(const BatchContext& c, const rsl::ir::Site& site) {
     if (c.host && !c.host->beginsAnew()) {
         const auto& files = c.bound->kernel->files();
-        const auto& at = s.site->place;
+        const auto& at = site.place;
         const SourcePlace place{at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column};
         c.host->diagnostics().reportOnce(
             "requests:" + place.file + std::to_string(place.line),
@@ -41,6 +38,16 @@ void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64
              {}});
     }
     throw LimitReached();
+}
+
+namespace {
+
+/// Reserves memory for another request of a kernel that does not wait. Throws LimitReached if there is too little;
+/// Pipeline::trace() then repeats the call with fewer points at a time.
+void takeRoom(BatchContext& c, const SiteInfo& s, size_t rows, int lanes, uint64_t mask) {
+    const size_t held = c.arena.size() * sizeof(float) + c.emits.size() * sizeof(EmitRecord) + c.emitted * sizeof(LobeVertex);
+    c.emitted += size_t(std::popcount(mask));
+    if (held + rows * size_t(lanes) * sizeof(float) > limits::kRequestBytes) endTooManyRequests(c, *s.site);
 }
 
 /// Values that only the loop has: replaces the row of the light's index by the distance, and appends two rows to the arguments.

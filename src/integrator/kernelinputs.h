@@ -30,4 +30,8 @@ private:
     std::vector<int> slotOf_; ///< by binding: index in views, or -1
 };
 
+/// Ends a call whose kernel requests more rays than fit into limits::kRequestBytes. Throws LimitReached, which Pipeline::trace()
+/// answers with fewer points at a time; reports the error if there is only one point.
+[[noreturn]] void endTooManyRequests(const BatchContext&, const rsl::ir::Site&);
+
 } // namespace alpenglow::integrator

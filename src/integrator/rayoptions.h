@@ -14,6 +14,7 @@ struct RayOptions {
     shading::Fade fade;        ///< "falloff"
     bool elsewhere = false;    ///< the ray starts at `from`, so the lobe samples no lights
     Vec3 from;
+    float base = 0; ///< "samplebase": rays start within this part of the footprint
 };
 
 /// Reads what does not depend on the point itself: all but samples, elsewhere and from. f(row): a number of the call's arguments.

@@ -1,12 +1,12 @@
 // Scattering: samples the selected lobes, plays roulette, makes the next rays.
 #pragma once
 #include "bsdf/lobe.h"
+#include "integrator/unshadowed.h"
 #include "integrator/vertexlobes.h"
 
 namespace alpenglow::integrator {
 
 class Accumulator;
-class Connection;
 class GuideRays;
 class LightPathStates;
 class LobeSelection;
@@ -34,7 +34,7 @@ struct LobeRay {
 
 class ScatterRays final : VertexStage {
 public:
-    ScatterRays(const StageSet&, const VertexLobes&, LobeSelection&, Connection&, PhotonScatter&);
+    ScatterRays(const StageSet&, const VertexLobes&, LobeSelection&, PhotonScatter&);
     void run(Sched&);
     void draw(int turn); ///< samples directions for one iteration and evaluates the lobes there
 
@@ -51,7 +51,7 @@ private:
     float roulette(const LobeVertex&, const LobeRay&, uint16_t& asked, const Color& weight) const;
     render::NumberRows numbers_;
     LobeSelection& selection_;
-    Connection& connection_;
+    UnshadowedLight unshadowed_;
     PhotonScatter& photonScatter_;
     Accumulator& accumulator_;
     GuideRays& guide_;

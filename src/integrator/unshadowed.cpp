@@ -1,18 +1,23 @@
-// Light along a ray of trace() if only area lights existed: "unshadowedarealight" for rays without light samples, and
-// "unshadowedenvironment", which area lights still occlude.
-#include "integrator/connection.h"
+#include "integrator/unshadowed.h"
+#include "integrator/batchcontext.h"
 #include "integrator/intersector.h"
 #include "integrator/lightkernels.h"
 #include "integrator/litsurfaces.h"
+#include "integrator/stageset.h"
+#include "integrator/vertex.h"
 
 namespace alpenglow::integrator {
 
-void Connection::unshadowed(const LobeVertex& l, const Vec3& w, const Color& through, const Color& environment, TraceSums& sums) {
+UnshadowedLight::UnshadowedLight(const StageSet& s)
+    : Stage(s.context), intersector_(s.intersector), lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces) {}
+
+void UnshadowedLight::add(const BatchContext& c, const LobeVertex& l, bool lamps, const Vec3& origin, const Vec3& w,
+                          const Color& through, const Color& environment, TraceSums& sums) {
     const shading::RaySet& set = l.rays->set;
-    const PathRay& from = rayOf(l);
-    const ShadePoint& p = c_->points[size_t(l.point)];
+    const PathRay& from = c.rays[size_t(l.point)];
+    const ShadePoint& p = c.points[size_t(l.point)];
     accel::Ray ray;
-    ray.org = origin(l, w);
+    ray.org = origin;
     ray.dir = w;
     ray.tfar = l.maxDistance;
     ray.time = world_.shutterOf(from);
@@ -23,14 +28,13 @@ void Connection::unshadowed(const LobeVertex& l, const Vec3& w, const Color& thr
     accel::Hit hit;
     while (intersector_.intersect(ray, hit) && set.only && !set.only[hit.shape]) world_.goOn(ray, hit);
     if (!hit.valid()) return sums.add(TraceSums::UnshadowedEnvironment, through * environment);
-    // Lobes that sample lights estimate area lights by these samples.
     const auto isOn = [&](int light) {
         const BoundLight& b = world_.lights_[size_t(light)];
         return b.kind == LightKind::Area && !b.mean && b.strategy != LightStrategy::Illuminance;
     };
     const int light = world_.shapes_[hit.shape]->attributes().areaLight;
-    const SurfaceBinding& lit = world_.bindings_[size_t(c_->bindings[size_t(l.point)])];
-    if (!l.lights || (!l.elsewhere && !l.delta) || !lit.lights.contains(light)) return;
+    const SurfaceBinding& lit = world_.bindings_[size_t(c.bindings[size_t(l.point)])];
+    if (!lamps || !lit.lights.contains(light)) return;
     std::vector<int> all{light};
     for (int part : world_.lights_[size_t(light)].parts) all.push_back(part);
     for (int number : all) {

@@ -14,19 +14,23 @@ protected:
     VertexBlocks();
     std::span<LobeBlock*> lobesOf(size_t block);
     /// The camera sample of a ray.
-    static const PathSample& sampleOf(const RayBlock& rays, int lane) {
-        return *reinterpret_cast<const PathSample*>(uint64_t(rays.sample[1][lane]) << 32 | rays.sample[0][lane]);
+    const PathSample& sampleOf(const RayBlock& rays, int lane) const {
+        const uint64_t at = uint64_t(rays.sample[1][lane]) << 32 | rays.sample[0][lane];
+        return at ? *reinterpret_cast<const PathSample*>(at) : *noSample_;
     }
     /// Factor of the light of surfaces that the ray of a lobe carries, without the energy rule.
     float indirectOf(const Site& s, size_t point) const {
+        const LobeVertex* const r = s.requestAt(point);
         if (s.direct || (s.lighting && s.diffuse && !apart_.empty() && (apart_[point / kBlock] >> point % kBlock & 1))) return 0;
-        return indirect_.empty() ? 1 : indirect_[point];
+        return r ? r->indirect : indirect_.empty() ? 1 : indirect_[point];
     }
     /// Sets the keys of the points of a block; the stream is still to be set.
     void beginNumbers(size_t block, render::NumberBlock&) const;
     /// Draws the random numbers of a stream (NumberBlock) at all points.
     void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true) const;
 
+    const PathSample* noSample_ = nullptr;       ///< for rays without a camera sample
+    const BatchContext* moved_ = nullptr;        ///< the batch, if its shader has moved points
     size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: requesting sites in sites_
     bool waits_ = false;                         ///< the kernel waits for its results
     std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
@@ -37,6 +41,8 @@ protected:
     std::vector<Site> sites_;                    ///< the first `count_`, in the order of the calls
     std::vector<LobeBlock*> block_;              ///< lobesOf()
     std::map<int, std::vector<uint32_t>> loops_; ///< by call site that is called several times at a point: calls so far
+    bool repeats_ = false;                       ///< some call site is called several times at a point
+    bool several_ = false;                       ///< the kernel waits for several rays of a call
     std::vector<Lanes> lit_;                     ///< by block: points that sample lights
     int onlySite_ = -1;                          ///< the only site that samples the light; -1: all
     std::vector<LightBlock> lights_;
@@ -50,8 +56,11 @@ protected:
     std::vector<float> lamp_;         ///< LightRows of these blocks
     std::vector<BlockPlaced> placed_; ///< by litBlocks_
     ScatterBlock next_{};
-    uint64_t ignored_ = 0; ///< rays that are not sent because their "weight" is 0
-    uint32_t turn_ = 0;    ///< if all lobes are followed: which ray of each lobe
+    std::vector<uint32_t> keys_; ///< by site, its number
+    alignas(64) Row survived_;   ///< if the kernel waits: probability with which its ray was sent
+    Lanes idle_ = 0;             ///< points of a block whose ray carries no light and only reports what it hits
+    uint64_t ignored_ = 0;       ///< rays that are not sent because their "weight" is 0
+    uint32_t turn_ = 0;          ///< if all lobes are followed: which ray of each lobe
     ShadowBlock shadow_{};
     int32_t sent_[kBlock];  ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
     alignas(64) Row whole_; ///< all ones

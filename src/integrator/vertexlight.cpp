@@ -1,5 +1,6 @@
 #include "integrator/vertexlight.h"
 #include "integrator/ambientlight.h"
+#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/requests.h"
 #include "integrator/stageset.h"
@@ -11,10 +12,11 @@ namespace alpenglow::integrator {
 VertexLight::~VertexLight() = default;
 
 VertexLight::VertexLight(const StageSet& s)
-    : Stage(s.context), set_(s), ambient_(s.ambient), requests_(s.requests), subsurface_(s.subsurface) {}
+    : Stage(s.context), set_(s), ambient_(s.ambient), blocks_(s.blocks), requests_(s.requests), subsurface_(s.subsurface) {}
 
 void VertexLight::gather(BatchContext& c, Sched& sched) {
     if (!ambient_.asked.empty()) ambient_.gather(c);
+    if (blocks_.runRequests(c, sched)) return;
     std::unique_ptr<VertexSampling> g = std::move(gather_); // moved out, so that a nested call makes its own
     if (!g) g = std::make_unique<VertexSampling>(set_);
     g->run(c, sched);

@@ -8,6 +8,7 @@
 namespace alpenglow::integrator {
 
 class AmbientLight;
+class BlockVertices;
 class VertexSampling;
 class Requests;
 struct StageSet;
@@ -28,6 +29,7 @@ private:
     /// Shaders already reported: reflectance over 1; reflectance plus transparency over 1.
     std::set<const void*> tamed_, tamedClear_;
     AmbientLight& ambient_;
+    BlockVertices& blocks_;
     Requests& requests_;
     SubsurfaceWalks& subsurface_;
 };

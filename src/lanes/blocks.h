@@ -41,7 +41,10 @@ struct alignas(64) LobeBlock {
     Lanes asked = 0;
     Lanes lights = 0;    ///< points whose lobe samples lights
     Lanes elsewhere = 0; ///< by request(): points whose ray starts elsewhere
+    Lanes stays = 0;     ///< points whose lobe sends no ray for another reason than depth
     Lanes ended = 0;     ///< by select(): points where a depth limit ends the ray that would have been sent
+    Lanes failed = 0;    ///< by select(): points whose probability is not finite; no ray is sent
+    void forget() { asked = lights = elsewhere = stays = ended = failed = 0; }
 };
 
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.
@@ -136,13 +139,17 @@ struct alignas(64) RayBlock {
 /// Roulette rule: none, by throughput, or by the weight of the followed lobe (bsdf/sampling.h).
 enum class Roulette : uint8_t { None, Throughput, Local };
 
+/// What select() must know of a call site.
+struct SiteRules {
+    bool lighting = false; ///< a lighting shadeop
+    bool diffuse = false;  ///< its rays are diffuse
+    bool endless = false;  ///< depth limits do not end its rays
+};
 /// Rules of select().
 struct SelectRules {
-    uint32_t lighting = 0; ///< bit i: site i is a lighting shadeop
-    bool unbiased = false; ///< disables the energy rule
-    uint32_t diffuse = 0;  ///< bit i: rays of site i are diffuse
-    bool all = false;      ///< each lobe is followed, with probability 1, instead of one of them
-    uint32_t endless = 0;  ///< bit i: depth limits do not end the rays of site i
+    const SiteRules* sites = nullptr; ///< one for each site
+    bool unbiased = false;            ///< disables the energy rule
+    bool all = false;                 ///< each lobe is followed, with probability 1, instead of one of them
 };
 /// Further results of select(): points whose reflectance exceeds 1, alone or with transparency; points with probabilities that
 /// are not finite.

@@ -92,7 +92,7 @@ AL_INLINE vf worthOf(const V3& share, const V3& left, vm competes) {
 
 /// Points where a depth limit ends the rays of a site.
 AL_INLINE Lanes deepOf(const VertexBlock& v, const SelectRules& rules, int site) {
-    return rules.endless >> site & 1 ? 0 : v.deep[rules.diffuse >> site & 1];
+    return rules.sites[site].endless ? 0 : v.deep[rules.sites[site].diffuse];
 }
 
 AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules, int at,
@@ -111,13 +111,14 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
         const vm mask = maskFrom(l.asked, at);
         const V3 weight = absolute(load3(l.weight, at));
         const vf albedo = load(l.lobe[kRowAlbedo] + at), worth = worthOf(weight, left, competes) * albedo;
-        if (rules.lighting >> s & 1) sum = choose(mask, sum + weight * albedo, sum);
-        found.failed |= bitsFrom(mask & ~finite(worth), at);
+        if (rules.sites[s].lighting) sum = choose(mask, sum + weight * albedo, sum);
+        l.failed |= bitsFrom(mask & ~finite(worth), at);
+        found.failed |= l.failed;
         const vm guided = maskFrom(v.guided, at) & (load(l.lobe[kRowDelta] + at) == 0);
-        const vm follows = mask & ~(worth < 0);
+        const vm follows = mask & finite(worth) & ~(worth < 0);
         found.cut |= bitsFrom(follows & (worth > 0), at) & v.last;
-        l.ended |= bitsFrom(follows & (worth > 0) & ~guided, at) & deep;
-        store(l.chosen + at, select(follows & ~maskFrom(deep, at) & ~guided, worth, vf(0)));
+        l.ended |= bitsFrom(follows & (worth > 0) & ~guided, at) & deep & ~l.stays;
+        store(l.chosen + at, select(follows & ~maskFrom(deep | l.stays, at) & ~guided, worth, vf(0)));
         lobes -= mask;
     }
     const vf scale = energyScaleOf(sum, clear, rules);
@@ -130,7 +131,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
     for (int s = 0; s < count; ++s) {
         LobeBlock& l = *sites[s];
         vf chosen = load(l.chosen + at);
-        if (v.through && (rules.lighting >> s & 1)) {
+        if (v.through && rules.sites[s].lighting) {
             const vf least = select(scale < vf(kLeastScale), vf(kLeastScale), scale);
             chosen = select(behind > 0, chosen * least, chosen);
             store(l.chosen + at, chosen);
@@ -148,7 +149,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
             share = select(alone, share, select(none, vf(0), select(whole, vf(1), __builtin_convertvector(c / total, vf))));
         }
         if (rules.all) share = select(chosen > 0, vf(1), vf(0));
-        if (v.waits) share = select(maskFrom(l.asked & ~deepOf(v, rules, s), at), vf(1), vf(0));
+        if (v.waits) share = select(maskFrom(l.asked & ~(deepOf(v, rules, s) | l.stays | v.guided), at), vf(1), vf(0));
         store(l.chosen + at, share);
     }
     const vd passes = __builtin_convertvector(behind, vd) / total;
@@ -158,7 +159,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
 
 static Selected selectLobes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules) {
     Selected found;
-    for (int s = 0; s < count; ++s) sites[s]->ended = 0;
+    for (int s = 0; s < count; ++s) sites[s]->ended = sites[s]->failed = 0;
     for (int at = 0; at < kBlock; at += kW) selectLanes(v, sites, count, rules, at, found);
     return found;
 }

@@ -159,7 +159,8 @@ TEST(Stages, SelectsByWhatLobesGiveBack) {
             std::vector<LobeBlock> mine = lobes;
             std::vector<LobeBlock*> sites;
             for (LobeBlock& l : mine) sites.push_back(&l);
-            const Selected found = s->select(v, sites.data(), int(sites.size()), {0b0101, false, 0b0010});
+            constexpr SiteRules kRules[4] = {{true, false, false}, {false, true, false}, {true, false, false}, {}};
+            const Selected found = s->select(v, sites.data(), int(sites.size()), {kRules});
             EXPECT_EQ(found.failed, 0u);
             EXPECT_EQ(found.cut & ~before.last, 0u);
             for (int i = 0; i < kBlock; ++i) {

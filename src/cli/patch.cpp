@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cstdio>
 #include <ctime>
-#include <new>
 #include <optional>
 
 namespace alpenglow::cli {
@@ -66,51 +65,33 @@ std::optional<float> constantOf(const rsl::ir::Input& i, const rsl::ParameterVal
 
 } // namespace
 
-Patch::Rows::Rows(size_t floats) {
-    size_t bytes = (std::max(floats, size_t(64)) * 4 + 63) / 64 * 64;
-    data.reset(static_cast<float*>(std::aligned_alloc(64, bytes)));
-    if (!data) throw std::bad_alloc();
-    std::fill_n(data.get(), bytes / 4, 0.f);
-}
-
 Patch::Patch(const rsl::CompiledKernel& kernel, std::vector<rsl::ParameterValue> values,
              const std::vector<std::string>& texturePaths, int width, int height, Diagnostics& diagnostics)
     : kernel_(kernel), values_(std::move(values)), width_(width), height_(height), diagnostics_(diagnostics),
-      services_(texturePaths, diagnostics), stop_(watchInterrupts()) {
-    for (const auto& i : kernel.inputs()) {
-        in_.emplace_back(size_t(std::max(1, i.array)) * rsl::ir::components(i.kind) * rsl::inputParts(i) * kPatchBatch);
-        inRows_.push_back(in_.back().data.get());
-    }
-    for (const auto& o : kernel.outputs()) {
-        out_.emplace_back(size_t(rsl::ir::components(o.kind)) * kPatchBatch);
-        outRows_.push_back(out_.back().data.get());
-    }
-    call_.in = inRows_.data();
-    call_.out = outRows_.data();
-    call_.stride = kPatchBatch;
-    call_.strings = kernel.strings().data();
-    call_.user = this;
-    call_.stop = stop_;
-    call_.service = service;
-    call_.lightBegin = [](rsl::KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
-    call_.lightFetch = [](rsl::KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
-    call_.lightEnd = [](rsl::KernelCall*, int32_t, int32_t, int32_t) {};
+      services_(texturePaths, diagnostics), runner_(kernel, kPatchBatch), stop_(watchInterrupts()) {}
+
+void Patch::answer(int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+    if (services_.answer(kernel_, site, first, mask, lanes, in, out)) return;
+    const auto& called = kernel_.sites()[size_t(site)];
+    if (spilled_.answer(called, first, mask, lanes, in, out, diagnostics_, &kernel_.files())) return;
+    rsl::basicService(
+        called, mask, lanes, in, out, diagnostics_,
+        [&](int lane, const std::string& text) {
+            if (!print_) return;
+            rsl::PrintKey key;
+            key.sample = int64_t(begun_) + first + lane;
+            prints_.add(key, text);
+        },
+        &kernel_.files());
 }
 
-void Patch::service(rsl::KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
-    Patch& p = *static_cast<Patch*>(c->user);
-    if (site < 0 || p.services_.answer(p.kernel_, site, first, mask, lanes, in, out)) return;
-    const auto& called = p.kernel_.sites()[size_t(site)];
-    if (p.spilled_.answer(called, first, mask, lanes, in, out, p.diagnostics_, &p.kernel_.files())) return;
-    rsl::basicService(
-        called, mask, lanes, in, out, p.diagnostics_,
-        [&](int lane, const std::string& text) {
-            if (!p.print_) return;
-            rsl::PrintKey key;
-            key.sample = int64_t(p.begun_) + first + lane;
-            p.prints_.add(key, text);
+void Patch::run(size_t points) {
+    runner_.run(
+        points,
+        [this](int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+            answer(site, first, mask, lanes, in, out);
         },
-        &p.kernel_.files());
+        stop_);
 }
 
 void Patch::fillInput(const rsl::ir::Input& i, float* rows, const std::vector<Vec2>& at) const {
@@ -139,11 +120,10 @@ void Patch::fillInput(const rsl::ir::Input& i, float* rows, const std::vector<Ve
 }
 
 void Patch::fill(const std::vector<Vec2>& at) {
-    call_.n = int32_t(at.size());
     std::vector<Vec3> points;
     for (const Vec2& p : at) points.push_back({p.x, p.y, 0});
     services_.setPoints({0.5f, 0.5f, 1}, points);
-    for (size_t k = 0; k < in_.size(); ++k) fillInput(kernel_.inputs()[k], in_[k].data.get(), at);
+    for (size_t k = 0; k < kernel_.inputs().size(); ++k) fillInput(kernel_.inputs()[k], runner_.input(k), at);
 }
 
 std::vector<std::string> Patch::channels() const {
@@ -164,10 +144,10 @@ void Patch::addBatch(display::Image& image, size_t first, size_t points, size_t 
     const size_t channels = image.channels.size();
     for (size_t p = 0; p < points; ++p) {
         float* pixel = image.data.data() + (first + p) / samples * channels;
-        for (size_t o = 0; o < out_.size(); ++o) {
+        for (size_t o = 0; o < kernel_.outputs().size(); ++o) {
             if (kernel_.outputs()[o].kind == rsl::ir::Kind::String) continue;
             for (int c = 0; c < rsl::ir::components(kernel_.outputs()[o].kind); ++c)
-                *pixel++ += out_[o].data.get()[size_t(c) * kPatchBatch + p] / float(samples);
+                *pixel++ += runner_.output(o, c)[p] / float(samples);
         }
     }
 }
@@ -187,7 +167,7 @@ display::Image Patch::picture(int side) {
         for (size_t i = first; i < std::min(total, first + size_t(kPatchBatch)); ++i) at.push_back(place(i));
         fill(at);
         begun_ = first;
-        kernel_.run(&call_);
+        run(at.size());
         prints_.flush();
         spilled_.clear();
         addBatch(image, first, at.size(), samples);
@@ -203,7 +183,7 @@ void Patch::printTimes(int iterations) {
     double best = 1e300, all = 0;
     for (int k = 0; k < iterations && !*stop_; ++k) {
         double t = cpuSeconds();
-        kernel_.run(&call_);
+        run(at.size());
         t = cpuSeconds() - t;
         best = std::min(best, t);
         all += t;

@@ -4,12 +4,10 @@
 #include "base/stopflag.h"
 #include "base/vec.h"
 #include "display/image.h"
-#include "rsl/kernel.h"
+#include "rsl/kernelrunner.h"
 #include "rsl/printlog.h"
 #include "rsl/spilledarrays.h"
 #include "services/withoutscene.h"
-#include <cstdlib>
-#include <memory>
 #include <string>
 #include <vector>
 
@@ -33,12 +31,8 @@ public:
     bool stopped() const { return *stop_ != 0; }
 
 private:
-    /// Floats, 64-byte aligned.
-    struct Rows {
-        std::unique_ptr<float, decltype(&std::free)> data{nullptr, &std::free};
-        explicit Rows(size_t floats);
-    };
-    static void service(rsl::KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out);
+    void answer(int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out);
+    void run(size_t points);
     void fill(const std::vector<Vec2>& at);
     void fillInput(const rsl::ir::Input&, float* rows, const std::vector<Vec2>& at) const;
     std::vector<std::string> channels() const;
@@ -49,11 +43,8 @@ private:
     int width_, height_;
     Diagnostics& diagnostics_;
     services::WithoutScene services_;
-    std::vector<Rows> in_, out_;
-    std::vector<const float*> inRows_;
-    std::vector<float*> outRows_;
+    rsl::KernelRunner runner_;
     const StopFlag* stop_;
-    rsl::KernelCall call_{};
     bool print_ = true;
     size_t begun_ = 0; ///< index of the batch's first point
     rsl::PrintLog prints_;

@@ -7,31 +7,8 @@
 
 namespace alpenglow::integrator {
 
-void BlockVertices::showAlbedo(BatchContext& c) {
-    if (c.aside) return;
-    for (size_t point = 0; point < points_; ++point) {
-        const PathRay& ray = c.rays[point];
-        if (!ray.counts) continue;
-        const size_t b = point / kBlock, i = point % kBlock;
-        Color exact(0);
-        std::vector<Color> measured;
-        for (size_t k = 0; k < count_; ++k) {
-            const LobeBlock& l = sites_[k].lobes[b];
-            if (!(l.asked >> i & 1)) continue;
-            const Color weight(l.weight[0][i], l.weight[1][i], l.weight[2][i]);
-            if (l.lobe[kRowDelta][i] != 0 || sites_[k].walks || !albedoIsMeasured(*sites_[k].kind, sites_[k].raysAt(point)))
-                exact += weight * l.lobe[kRowAlbedo][i];
-            else measured.push_back(ray.weight * weight * measuredAlbedo(sites_[k], ray, point));
-        }
-        Color& albedo = accumulator_.results[size_t(ray.sample->path)]->albedo;
-        albedo += ray.weight * exact;
-        for (const Color& seen : measured)
-            if (isFinite(seen)) albedo += seen;
-    }
-}
-
 /// An unbiased estimate from sampled directions, one in a lane.
-Color BlockVertices::measuredAlbedo(const Site& s, const PathRay& ray, size_t point) {
+static Color measuredAlbedo(const BlockLobes& s, const PathRay& ray, size_t point) {
     const LobeBlock& l = s.lobes[point / kBlock];
     const size_t i = point % kBlock;
     constexpr int kDraws = int(kAlbedoDraws);
@@ -56,6 +33,29 @@ Color BlockVertices::measuredAlbedo(const Site& s, const PathRay& ray, size_t po
         if (pdf > 0) sum += Color(value[kRowColour][k], value[kRowColour + 1][k], value[kRowColour + 2][k]) / pdf;
     }
     return sum / float(kDraws);
+}
+
+void BlockVertices::showAlbedo(BatchContext& c) {
+    if (c.aside) return;
+    for (size_t point = 0; point < points_; ++point) {
+        const PathRay& ray = c.rays[point];
+        if (!ray.counts) continue;
+        const size_t b = point / kBlock, i = point % kBlock;
+        Color exact(0);
+        std::vector<Color> measured;
+        for (size_t k = 0; k < count_; ++k) {
+            const LobeBlock& l = sites_[k].lobes[b];
+            if (!(l.asked >> i & 1)) continue;
+            const Color weight(l.weight[0][i], l.weight[1][i], l.weight[2][i]);
+            if (l.lobe[kRowDelta][i] != 0 || sites_[k].walks || !albedoIsMeasured(*sites_[k].kind, sites_[k].raysAt(point)))
+                exact += weight * l.lobe[kRowAlbedo][i];
+            else measured.push_back(ray.weight * weight * measuredAlbedo(sites_[k], ray, point));
+        }
+        Color& albedo = accumulator_.results[size_t(ray.sample->path)]->albedo;
+        albedo += ray.weight * exact;
+        for (const Color& seen : measured)
+            if (isFinite(seen)) albedo += seen;
+    }
 }
 
 } // namespace alpenglow::integrator

@@ -1,5 +1,5 @@
 // Skies at the last vertices of paths, for vertices in blocks (lastskies.h).
-#include "integrator/blockvertices.h"
+#include "integrator/blockrequests.h"
 #include "integrator/surfacepoints.h"
 #include <algorithm>
 #include <bit>
@@ -29,7 +29,7 @@ void BlockVertices::endLobe(const Site& s, size_t b, const BatchContext& c) {
         n.occurrence[i] = s.occurrenceAt(b * kBlock + i) * 4096;
     render::drawBlocks({&n, 1});
     s.draw(b, some, n, drawn_);
-    drawAgain(s, b, some);
+    requested_->drawAgain(s, b, some);
     for (int i = 0; i < kBlock; ++i)
         if (drawn_[kRowDrawn][i] == 0) some &= ~(1u << i);
     size_t points[kBlock];

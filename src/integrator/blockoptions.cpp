@@ -12,14 +12,12 @@ static const geometry::SurfacePoint& surfaceAt(const BatchContext& c, size_t poi
     return c.points.empty() ? c.surfaces[point] : c.points[point].surface;
 }
 
-bool BlockVertices::hasOptions(const Site& s) const {
-    return s.info->block->options || !rules_.pickOne ||
-           std::any_of(s.lobes.begin(), s.lobes.begin() + long(blocks_), [](const LobeBlock& l) { return l.elsewhere != 0; });
-}
-
 /// Reads the parameters of a call. A ray with "weight" 0 is not sent. Returns false if points choose among many lights, whose
 /// shadow rays all begin alike.
 bool BlockVertices::readOptions(Site& s, BatchContext& c) {
+    const auto elsewhere = [](const LobeBlock& l) { return l.elsewhere != 0; };
+    if (!s.info->block->options && rules_.pickOne && std::none_of(s.lobes.begin(), s.lobes.begin() + long(blocks_), elsewhere))
+        return true;
     const SiteInfo& info = *s.info;
     if (s.lights && !world_.lightLists_[size_t(c.binding->lightList)].chooser.empty()) return false;
     s.options.assign(points_, {});

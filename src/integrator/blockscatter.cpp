@@ -1,6 +1,7 @@
 // Continuation rays of paths from vertices in blocks.
 #include "integrator/accumulator.h"
 #include "integrator/blockguide.h"
+#include "integrator/blockrequests.h"
 #include "integrator/blockvertices.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/mediastacks.h"
@@ -89,7 +90,7 @@ void BlockVertices::drawDirections(size_t b) {
         Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
         s.draw(b, picked, n, drawn_);
-        drawAgain(s, b, picked);
+        requested_->drawAgain(s, b, picked);
         stages_.takeDirections(lobe, int(k), s.lighting, drawn_[0], next_);
     }
     for (size_t k = 0; k < count_; ++k) {
@@ -129,7 +130,7 @@ void BlockVertices::throwDice(size_t b) {
 }
 
 void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
-    if (!requested_.empty()) examine(b, c);
+    if (!requested_->empty()) requested_->examine(b, c);
     throwDice(b);
     for (Lanes bad = stages_.extend(vertices_[b], waits_ ? Roulette::None : roulette_, next_); bad; bad &= bad - 1) {
         const int lane = std::countr_zero(bad);
@@ -217,7 +218,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];
         extra.indirect = indirect;
         extra.share = share;
-        if (request) addToRay(*request, extra, i, c);
+        if (request) requested_->addToRay(*request, extra, i, c);
         r.extra[i] = store_.newExtra(extra);
     }
     guided_->keep(b, c);

@@ -1,6 +1,7 @@
 // Vertices in blocks: from the requests of a kernel to lobes, and the probabilities of following them.
 #include "integrator/accumulator.h"
 #include "integrator/blockguide.h"
+#include "integrator/blockrequests.h"
 #include "integrator/chosenlights.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/occlusioncalls.h"
@@ -10,6 +11,7 @@
 #include "integrator/subsurfacewalks.h"
 #include "integrator/surfacepoints.h"
 #include "integrator/vertexlight.h"
+#include "services/random.h"
 #include "world/blocksite.h"
 #include "world/emitterfootprint.h"
 #include <algorithm>
@@ -30,8 +32,8 @@ bool isPlainLight(const BoundLight& l, bool chosen) {
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lastSkies_(s.lastSkies),
       lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), occlusion_(s.occlusion),
-      photons_(s.photons), requests_(s.requests), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface),
-      surfaces_(s.surfaces), vertexLight_(s.vertexLight), unshadowed_(s), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+      photons_(s.photons), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces),
+      vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
     const bool rules = rules_.lightsAtRequests && !set.lightOnly && set.indirect;
@@ -40,6 +42,7 @@ BlockVertices::BlockVertices(const StageSet& s)
     usable_ &= world_.accel_ != nullptr; // requires a complete world
     noSample_ = &store_.noSample;
     guided_ = std::make_unique<Guided>(*this, s.guide);
+    requested_ = std::make_unique<Requested>(*this, s);
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
         plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
@@ -58,13 +61,8 @@ bool BlockVertices::takesRays(const BatchContext& c) const {
     });
 }
 
-bool BlockVertices::takes(const BatchContext& c) const {
-    if (!usable_ || !plain_[size_t(c.binding->lightList)] || !asksBlocks(c)) return false;
-    return !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
-}
-
 /// Whether blocks can process all lobes that the kernel has requested at the points of the batch, with a weight that is not 0.
-bool BlockVertices::asksBlocks(const BatchContext& c) {
+static bool asksBlocks(const BatchContext& c) {
     const BoundKernel& kernel = *c.bound;
     if (kernel.blocks || kernel.kernel->facts().suspends) return kernel.blocks;
     return std::all_of(c.emits.begin(), c.emits.end(), [&](const EmitRecord& e) {
@@ -76,6 +74,11 @@ bool BlockVertices::asksBlocks(const BatchContext& c) {
                 if (weight[q * e.lanes + lane] != 0) return false;
         return true;
     });
+}
+
+bool BlockVertices::takes(const BatchContext& c) const {
+    if (!usable_ || !plain_[size_t(c.binding->lightList)] || !asksBlocks(c)) return false;
+    return !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
@@ -96,7 +99,7 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
     loops_.clear();
     repeats_ = several_ = false;
     moved_ = nullptr;
-    requested_.clear();
+    requested_->clear();
     ignored_ = 0;
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
@@ -130,7 +133,8 @@ bool BlockVertices::loadVertices(const BatchContext& c) {
         guided_->mark(b, c);
         if (c.between) loadFlown(b, c);
         else if (!loadPoints(b, c)) return false;
-        if (waits_ && requested_.empty()) nameLights(vertices_[b], uint32_t(c.emits[0].site));
+        for (int i = 0; waits_ && requested_->empty() && i < kBlock; ++i) // light samples of the call
+            vertices_[b].lightVertex[i] = childVertex(vertices_[b].vertex[i], kLightPoint + uint32_t(c.emits[0].site), 0);
     }
     return true;
 }
@@ -194,7 +198,7 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
         v.error[k] = p.pError;
         v.bias[k] = s.bias;
     }
-    return !moved_ || !requested_.empty();
+    return !moved_ || !requested_->empty();
 }
 
 /// Counts the calls of a strip at each call site: in a loop one follows another.
@@ -288,7 +292,7 @@ bool BlockVertices::request(BatchContext& c) {
                 return false;
         }
         if (!waits_) noteHemispheres(s, c);
-        if (hasOptions(s) && !readOptions(s, c)) return false;
+        if (!readOptions(s, c)) return false;
     }
     return true;
 }

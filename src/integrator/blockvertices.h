@@ -6,7 +6,6 @@
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"
 #include "integrator/stageset.h"
-#include "integrator/unshadowed.h"
 #include "integrator/vertexblocks.h"
 #include "lanes/stages.h"
 
@@ -44,8 +43,8 @@ private:
     class CallCount;    ///< blockvertices.cpp
     class ChosenLights; ///< chosenlights.h
     class Guided;       ///< blockguide.h
+    class Requested;    ///< blockrequests.h
     // blockvertices.cpp
-    static bool asksBlocks(const BatchContext&);
     bool follow(BatchContext&, Sched&, bool waits);
     bool followLobes(BatchContext&, Sched&);
     void begin(const BatchContext&, bool waits);
@@ -61,17 +60,6 @@ private:
     void countCalls(Site&, const EmitRecord&, const BatchContext&, std::vector<uint32_t>& before);
     void prepare();
     void select(const BatchContext&);
-    // blockrequests.cpp
-    bool takesRequests(const BatchContext&) const;
-    void takeRequests(BatchContext&);
-    size_t siteOf(const LobeVertex&, size_t next, const BatchContext&);
-    void takeRequest(Site&, const LobeVertex&);
-    void readOptions(Site&);
-    void examine(size_t block, BatchContext&);
-    bool intersectsEmitter(const LobeVertex&, size_t point, const Vec3& w) const;
-    void drawAgain(const Site&, size_t block, Lanes);
-    Color throughputOf(int lane) const;
-    void addToRay(const LobeVertex&, RayExtra&, int lane, const BatchContext&);
     // blocklights.cpp
     void light(BatchContext&);
     void findLit(const BoundLight*);
@@ -109,20 +97,16 @@ private:
     bool asksShadowDisk(const BoundLight&, const shading::Batch&, size_t at, LightValue&);
     // blockwaiting.cpp
     bool takes(const BatchContext&, std::span<KernelStrip* const>) const;
-    void nameLights(VertexBlock&, uint32_t site) const;
     void endByChance(size_t block);
     void lightDirections(const BatchContext&); // blocklightdirected.cpp
     // blockmedium.cpp
     void beginMedium(std::span<const Vec3> beside, float anisotropy);
     void loadFlown(size_t block, const BatchContext&);
     void takeParts(const BoundLight&, const BatchContext&);
-    void beginExits(const BatchContext&); // blockexits.cpp
-    void walkBelow(size_t block, BatchContext&);
-    // blockalbedo.cpp
-    void showAlbedo(BatchContext&);
-    static Color measuredAlbedo(const Site&, const PathRay&, size_t point);
+    void beginExits(const BatchContext&);        // blockexits.cpp
+    void walkBelow(size_t block, BatchContext&); // blockexits.cpp
+    void showAlbedo(BatchContext&);              // blockalbedo.cpp
     // blockoptions.cpp
-    bool hasOptions(const Site&) const;
     bool readOptions(Site&, BatchContext&);
     void limitShadows(const Site&, size_t block, const BoundLight&, LightBlock&);
     void applyOptions(size_t block, const BatchContext&);
@@ -146,23 +130,21 @@ private:
     MediumEvents& mediumEvents_;
     OcclusionCalls& occlusion_;
     PhotonStage& photons_;
-    Requests& requests_;
     RayStore& store_;
     ShadowRays& shadows_;
     SubsurfaceWalks& subsurface_;
     SurfacePoints& surfaces_;
     VertexLight& vertexLight_;
-    UnshadowedLight unshadowed_;
     const Stages& stages_;
     LobeLanesList lanes_;
-    std::vector<LobeVertex> requested_; ///< taken from Requests::lobes
-    bool usable_ = false;               ///< the world and the settings allow blocks
+    bool usable_ = false; ///< the world and the settings allow blocks
     Roulette roulette_ = Roulette::None;
     std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light
     std::vector<char> inRows_;                                              ///< by light: can be sampled without points
     std::vector<char> plain_;                                               ///< by light list: blocks support all lights
     std::unique_ptr<ChosenLights> chosen_;
     std::unique_ptr<Guided> guided_;
+    std::unique_ptr<Requested> requested_;
 };
 
 } // namespace alpenglow::integrator

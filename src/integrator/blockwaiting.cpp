@@ -69,11 +69,6 @@ bool BlockVertices::run(BatchContext& c, std::span<KernelStrip* const> strips, S
     return true;
 }
 
-/// Random number key of the light samples for waiting kernels: that of the call.
-void BlockVertices::nameLights(VertexBlock& v, uint32_t site) const {
-    for (int i = 0; i < kBlock; ++i) v.lightVertex[i] = childVertex(v.vertex[i], kLightPoint + site, 0);
-}
-
 /// Roulette for rays of a waiting kernel, by the number of rays that it requests.
 void BlockVertices::endByChance(size_t b) {
     RayBlock& r = rays_[b];

@@ -1,13 +1,12 @@
 #include "python/shadearrays.h"
 #include "rsl/front/protocol.h"
+#include "rsl/kernelrunner.h"
 #include "rsl/printlog.h"
 #include "rsl/services_basic.h"
 #include "rsl/spilledarrays.h"
 #include "services/withoutscene.h"
 #include <algorithm>
-#include <cstdlib>
 #include <fmt/format.h>
-#include <memory>
 #include <optional>
 #include <set>
 
@@ -15,17 +14,6 @@ namespace alpenglow::python {
 namespace {
 
 constexpr int kBatch = 4096;
-
-/// Rows of floats, 64-byte aligned.
-struct Rows {
-    std::unique_ptr<float, decltype(&std::free)> data{nullptr, &std::free};
-    explicit Rows(size_t floats) {
-        const size_t bytes = (std::max(floats, size_t(64)) * 4 + 63) / 64 * 64;
-        data.reset(static_cast<float*>(std::aligned_alloc(64, bytes)));
-        if (!data) throw std::bad_alloc();
-        std::fill_n(data.get(), bytes / 4, 0.f);
-    }
-};
 
 /// A predefined variable where nothing is given: its value and how that changes along u and v.
 struct Standard {
@@ -67,37 +55,17 @@ const Standard* standardOf(const std::string& name) {
 class Job {
 public:
     Job(const rsl::CompiledKernel& k, const std::vector<rsl::ParameterValue>& values, const ShadeRequest& r, Diagnostics& d)
-        : kernel_(k), values_(values), request_(r), diagnostics_(d), services_(r.searchPaths, d) {
-        for (const auto& i : k.inputs()) {
-            in_.emplace_back(size_t(std::max(1, i.array)) * size_t(rsl::ir::components(i.kind)) * size_t(rsl::inputParts(i)) *
-                             kBatch);
-            inRows_.push_back(in_.back().data.get());
-        }
-        for (const auto& o : k.outputs()) {
-            out_.emplace_back(size_t(rsl::ir::components(o.kind)) * kBatch);
-            outRows_.push_back(out_.back().data.get());
-            results_.push_back({o.name, rsl::ir::components(o.kind), {}});
-        }
+        : kernel_(k), values_(values), request_(r), diagnostics_(d), services_(r.searchPaths, d), runner_(k, kBatch) {
+        for (const auto& o : k.outputs()) results_.push_back({o.name, rsl::ir::components(o.kind), {}});
     }
 
     std::vector<ShadeOutput> run() {
-        rsl::KernelCall call{};
-        call.in = inRows_.data();
-        call.out = outRows_.data();
-        call.stride = kBatch;
-        call.strings = kernel_.strings().data();
-        call.user = this;
-        call.stop = &stop_;
-        call.service = [](rsl::KernelCall* c, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in,
-                          float* out) { static_cast<Job*>(c->user)->serve(site, first, mask, lanes, in, out); };
-        call.lightBegin = [](rsl::KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
-        call.lightFetch = [](rsl::KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
-        call.lightEnd = [](rsl::KernelCall*, int32_t, int32_t, int32_t) {};
         for (first_ = 0; first_ < request_.points; first_ += kBatch) {
             count_ = std::min(size_t(kBatch), request_.points - first_);
-            call.n = int32_t(count_);
             fill();
-            kernel_.run(&call);
+            runner_.run(count_, [this](int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
+                serve(site, first, mask, lanes, in, out);
+            });
             prints_.flush();
             spilled_.clear();
             take();
@@ -108,7 +76,7 @@ public:
 
 private:
     void serve(int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
-        if (site < 0 || services_.answer(kernel_, site, first, mask, lanes, in, out)) return;
+        if (services_.answer(kernel_, site, first, mask, lanes, in, out)) return;
         const rsl::ir::Site& s = kernel_.sites()[size_t(site)];
         if (spilled_.answer(s, first, mask, lanes, in, out, diagnostics_, &kernel_.files())) return;
         rsl::basicService(
@@ -176,7 +144,7 @@ private:
         for (size_t p = 0; p < count_; ++p)
             points.push_back({variable("P", first_ + p, 0, 0), variable("P", first_ + p, 1, 0), variable("P", first_ + p, 2, 0)});
         services_.setPoints({variable("E", first_, 0, 0), variable("E", first_, 1, 0), variable("E", first_, 2, 0)}, points);
-        for (size_t k = 0; k < in_.size(); ++k) fill(kernel_.inputs()[k], in_[k].data.get());
+        for (size_t k = 0; k < kernel_.inputs().size(); ++k) fill(kernel_.inputs()[k], runner_.input(k));
     }
 
     void fill(const rsl::ir::Input& i, float* rows) const {
@@ -209,11 +177,11 @@ private:
     }
 
     void take() {
-        for (size_t o = 0; o < out_.size(); ++o) {
+        for (size_t o = 0; o < results_.size(); ++o) {
             ShadeOutput& r = results_[o];
             if (kernel_.outputs()[o].kind == rsl::ir::Kind::String) r.width = 0;
             for (size_t p = 0; p < count_; ++p)
-                for (int c = 0; c < r.width; ++c) r.numbers.push_back(out_[o].data.get()[size_t(c) * kBatch + p]);
+                for (int c = 0; c < r.width; ++c) r.numbers.push_back(runner_.output(o, c)[p]);
         }
     }
 
@@ -222,12 +190,9 @@ private:
     const ShadeRequest& request_;
     Diagnostics& diagnostics_;
     services::WithoutScene services_;
+    rsl::KernelRunner runner_;
     rsl::PrintLog prints_;
     rsl::SpilledArrays spilled_;
-    StopFlag stop_;
-    std::vector<Rows> in_, out_;
-    std::vector<const float*> inRows_;
-    std::vector<float*> outRows_;
     std::vector<ShadeOutput> results_;
     size_t first_ = 0, count_ = 0;
 };

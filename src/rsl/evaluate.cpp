@@ -1,5 +1,6 @@
 #include "rsl/evaluate.h"
 #include "rsl/front/protocol.h"
+#include "rsl/kernelrunner.h"
 #include "rsl/messages/messages.h"
 #include "rsl/spilledarrays.h"
 #include <algorithm>
@@ -73,10 +74,8 @@ bool EvaluationPoint::value(const std::string& name, int component, int part, fl
 
 namespace {
 
-/// rsl::ServiceFn of such a point.
-void answerAtPoint(KernelCall* kc, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
-    auto& x = *static_cast<PointContext*>(kc->user);
-    if (site < 0) return;
+/// Answers a call at such a point.
+void answerAtPoint(PointContext& x, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* out) {
     if (x.answers(site, first, mask, lanes, in, out)) return;
     const ir::Site& s = x.kernel->sites()[size_t(site)];
     basicService(
@@ -107,55 +106,36 @@ void answerAtPoint(KernelCall* kc, int32_t site, int32_t first, uint64_t mask, i
     }
 }
 
+/// Sets an input to its value at the point, in all lanes.
+void fillAtPoint(const ir::Input& i, bool scalar, float* rows, size_t stride) {
+    const int parts = inputParts(i), components = ir::components(i.kind), elements = std::max(1, i.array);
+    for (int e = 0; e < elements; e++)
+        for (int c = 0; c < components; c++)
+            for (int part = 0; part < parts; part++) {
+                float v = 0;
+                if (i.kind == ir::Kind::Matrix) v = c % 5 == 0 ? 1.0f : 0.0f; // every space is "current"
+                else EvaluationPoint::value(i.name, c, part, v);
+                const size_t row = size_t(e * components + c) * size_t(parts) + size_t(part);
+                if (scalar) rows[row] = v;
+                else std::fill_n(rows + row * stride, stride, v);
+            }
+}
+
 } // namespace
 
 bool runAtPoint(const CompiledKernel& k, bool mixed, int n, int at, std::vector<std::vector<float>>& out, std::string* printed,
                 Diagnostics& diagnostics, const AnswerFn& answer) {
     if (k.facts().suspends) return false;
-    const int stride = (n + 63) / 64 * 64;
-    std::vector<std::unique_ptr<float, decltype(&std::free)>> blocks;
-    auto make = [&](int rows) {
-        const size_t count = size_t(std::max(1, rows)) * size_t(stride);
-        blocks.emplace_back(static_cast<float*>(std::aligned_alloc(64, count * 4)), &std::free);
-        std::fill_n(blocks.back().get(), count, 0.0f);
-        return blocks.back().get();
-    };
-    std::vector<const float*> in;
-    for (const auto& i : k.inputs()) {
-        const int parts = inputParts(i), components = ir::components(i.kind), elements = std::max(1, i.array);
-        float* p = make(components * parts * elements);
-        const bool scalar = i.uniform && !mixed;
-        for (int e = 0; e < elements; e++)
-            for (int c = 0; c < components; c++)
-                for (int part = 0; part < parts; part++) {
-                    float v = 0;
-                    if (i.kind == ir::Kind::Matrix) v = c % 5 == 0 ? 1.0f : 0.0f; // every space is "current"
-                    else EvaluationPoint::value(i.name, c, part, v);
-                    const size_t row = size_t(e * components + c) * size_t(parts) + size_t(part);
-                    if (scalar) p[row] = v;
-                    else std::fill_n(p + row * size_t(stride), stride, v);
-                }
-        in.push_back(p);
-    }
-    std::vector<float*> outs;
-    for (const auto& o : k.outputs()) outs.push_back(make(ir::components(o.kind)));
+    KernelRunner runner(k, size_t(n));
+    for (size_t i = 0; i < k.inputs().size(); ++i)
+        fillAtPoint(k.inputs()[i], k.inputs()[i].uniform && !mixed, runner.input(i), runner.stride());
     PointContext context{&k, printed, &diagnostics, n, &answer};
-    KernelCall call{};
-    call.in = in.data();
-    call.out = outs.data();
-    call.n = n;
-    call.stride = stride;
-    call.strings = k.strings().data();
-    call.user = &context;
-    call.service = answerAtPoint;
-    call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
-    call.lightFetch = [](KernelCall*, int32_t, int32_t, int32_t, uint64_t, int32_t, float*) { return uint64_t(0); };
-    call.lightEnd = [](KernelCall*, int32_t, int32_t, int32_t) {};
-    k.run(&call);
-    for (size_t o = 0; o < outs.size(); o++) {
+    runner.run(size_t(n), [&](int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* in, float* results) {
+        answerAtPoint(context, site, first, mask, lanes, in, results);
+    });
+    for (size_t o = 0; o < k.outputs().size(); o++) {
         out.emplace_back();
-        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++)
-            out.back().push_back(outs[o][size_t(c) * size_t(stride) + size_t(at)]);
+        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++) out.back().push_back(runner.output(o, c)[at]);
     }
     return true;
 }

@@ -7,6 +7,7 @@
 #include "rsl/jit/jit.h"
 #include "rsl/jit/sha256.h"
 #include "rsl/kernelkey.h"
+#include "rsl/kernelrunner.h"
 #include "rsl/messages/messages.h"
 #include "rsl/passes/looplimit.h"
 #include "rsl/passes/optimize.h"
@@ -20,48 +21,21 @@ namespace {
 
 /// Runs a kernel whose inputs are spaces and predefined variables for one point.
 void runOnce(const CompiledKernel& k, const SpaceFn& spaces, std::vector<std::vector<float>>& out) {
-    constexpr int kStride = 64;
-    struct Block {
-        float* p;
-        explicit Block(int rows) : p(static_cast<float*>(std::aligned_alloc(64, size_t(std::max(1, rows)) * kStride * 4))) {
-            std::fill(p, p + std::max(1, rows) * kStride, 0.0f);
-        }
-        Block(Block&& o) noexcept : p(o.p) { o.p = nullptr; }
-        ~Block() { std::free(p); }
-    };
-    std::vector<Block> blocks;
-    std::vector<const float*> in;
-    std::vector<float*> outs;
-    for (const auto& i : k.inputs()) {
-        const int rows = ir::components(i.kind) * inputParts(i) * std::max(1, i.array);
-        blocks.emplace_back(rows);
-        float* p = blocks.back().p;
-        if (i.kind == ir::Kind::Matrix) {
-            float m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
-            if (const InputName name = InputName::parse(i.name); spaces && name.kind == InputName::Kind::Space)
-                spaces(name.from, name.to, m);
-            for (int c = 0; c < 16; c++)
-                for (int n = 0; n < (i.uniform ? 1 : kStride); n++) p[i.uniform ? c : c * kStride + n] = m[c];
-        }
-        in.push_back(p);
+    KernelRunner runner(k, 1);
+    for (size_t n = 0; n < k.inputs().size(); ++n) {
+        const auto& i = k.inputs()[n];
+        if (i.kind != ir::Kind::Matrix) continue;
+        float m[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1};
+        if (const InputName name = InputName::parse(i.name); spaces && name.kind == InputName::Kind::Space)
+            spaces(name.from, name.to, m);
+        for (size_t c = 0; c < 16; c++)
+            if (i.uniform) runner.input(n)[c] = m[c];
+            else std::fill_n(runner.input(n) + c * runner.stride(), runner.stride(), m[c]);
     }
-    for (const auto& o : k.outputs()) {
-        blocks.emplace_back(ir::components(o.kind));
-        outs.push_back(blocks.back().p);
-    }
-    KernelCall call{};
-    call.in = in.data();
-    call.out = outs.data();
-    call.n = 1;
-    call.stride = kStride;
-    call.strings = k.strings().data();
-    call.service = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*, float*) {};
-    call.lightBegin = [](KernelCall*, int32_t, int32_t, uint64_t, int32_t, const float*) { return int32_t(0); };
-    call.lightEnd = [](KernelCall*, int32_t, int32_t, int32_t) {};
-    k.run(&call);
-    for (size_t o = 0; o < outs.size(); o++) {
+    runner.run(1, {});
+    for (size_t o = 0; o < k.outputs().size(); o++) {
         out.emplace_back();
-        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++) out.back().push_back(outs[o][c * kStride]);
+        for (int c = 0; c < ir::components(k.outputs()[o].kind); c++) out.back().push_back(*runner.output(o, c));
     }
 }
 

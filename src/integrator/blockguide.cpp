@@ -28,6 +28,7 @@ BlockVertices::Guided::Point BlockVertices::Guided::pointOf(size_t block, int i,
         const Site& s = b_.sites_[k];
         const size_t point = block * kBlock + size_t(i);
         if (!(b_.indirectOf(s, point) > 0) || (!s.options.empty() && s.options[point].fade.fades())) continue;
+        if (s.rays->gathersPhotons) continue;
         const float gives = luminance(absolute(weightOf(l))) * l.lobe[kRowAlbedo][i];
         if (gives > most) found.site = int(k), most = gives;
     }

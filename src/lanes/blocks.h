@@ -42,6 +42,8 @@ struct alignas(64) LobeBlock {
     Lanes lights = 0;    ///< points whose lobe samples lights
     Lanes elsewhere = 0; ///< by request(): points whose ray starts elsewhere
     Lanes ended = 0;     ///< by select(): points where a depth limit ends the ray that would have been sent
+    Lanes narrow = 0;    ///< points where photons treat the lobe as a mirror, though it is no delta
+    Lanes left = 0;      ///< of these: points where it leaves the lights that send photons to them
 };
 
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.

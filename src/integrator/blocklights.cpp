@@ -1,6 +1,7 @@
 // Light sampling for vertices in blocks, and the lobes' response.
 #include "base/direction.h"
 #include "integrator/accumulator.h"
+#include "integrator/blockphotons.h"
 #include "integrator/chosenlights.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
@@ -55,7 +56,7 @@ void BlockVertices::findLit(const BoundLight* light) {
 Lanes BlockVertices::litBy(size_t site, size_t b, const BoundLight& light) const {
     if ((onlySite_ >= 0 && onlySite_ != int(site)) || !samples(sites_[site], light)) return 0;
     const LobeBlock& l = sites_[site].lobes[b];
-    Lanes some = l.lights;
+    Lanes some = l.lights & ~gathered_->bring(l, light);
     for (int i = 0; light.guidable && i < kBlock; ++i) some &= ~(Lanes(!(l.chosen[i] > 0)) << i);
     return some;
 }

@@ -24,9 +24,6 @@ BlockVertices::Requested::Requested(BlockVertices& b, const StageSet& s)
 bool BlockVertices::Requested::takes(const BatchContext& c) const {
     if (!b_.usable_ || !b_.plain_[size_t(world_.bindings_[size_t(c.bindings[0])].lightList)] || b_.photons_.photonTrace())
         return false;
-    const bool photons = world_.photons_ && std::any_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
-                             return world_.photons_->pass(r.sample->sample) != nullptr;
-                         });
     const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[0])];
     const auto hasOptions = [](const LobeVertex& l) {
         return l.samples != 1 || l.bias >= 0 || l.base > 0 || l.elsewhere || l.importance != 1 || l.maxDistance < 1e38f ||
@@ -35,7 +32,7 @@ bool BlockVertices::Requested::takes(const BatchContext& c) const {
     if (!world_.lightLists_[size_t(b.lightList)].chooser.empty() &&
         std::any_of(requests_.lobes.begin(), requests_.lobes.end(), hasOptions))
         return false;
-    return !photons && std::all_of(requests_.lobes.begin(), requests_.lobes.end(), [&](const LobeVertex& l) {
+    return std::all_of(requests_.lobes.begin(), requests_.lobes.end(), [&](const LobeVertex& l) {
         const shading::RaySet& set = l.rays->set;
         const bool plain = !set.only && set.sides == accel::Sides::Front && set.mode == shading::HitMode::Default;
         const bool several = l.trace && (l.ownsTarget || !b_.rules_.pickOne) && l.samples > 1;

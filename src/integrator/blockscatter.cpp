@@ -1,6 +1,7 @@
 // Continuation rays of paths from vertices in blocks.
 #include "integrator/accumulator.h"
 #include "integrator/blockguide.h"
+#include "integrator/blockphotons.h"
 #include "integrator/blockrequests.h"
 #include "integrator/blockvertices.h"
 #include "integrator/lightpathstates.h"
@@ -222,6 +223,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         r.extra[i] = store_.newExtra(extra);
     }
     guided_->keep(b, c);
+    gathered_->keep(b, c);
 }
 
 void BlockVertices::spawn(const RayBlock& rays, Sched& sched) {

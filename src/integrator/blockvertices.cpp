@@ -1,6 +1,7 @@
 // Vertices in blocks: from the requests of a kernel to lobes, and the probabilities of following them.
 #include "integrator/accumulator.h"
 #include "integrator/blockguide.h"
+#include "integrator/blockphotons.h"
 #include "integrator/blockrequests.h"
 #include "integrator/chosenlights.h"
 #include "integrator/lightpathstates.h"
@@ -38,11 +39,12 @@ BlockVertices::BlockVertices(const StageSet& s)
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
     const bool rules = rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && !world_.traceSubsets_ && !world_.globalMaps_;
+    usable_ = set.blocks && rules && lights && !world_.traceSubsets_;
     usable_ &= world_.accel_ != nullptr; // requires a complete world
     noSample_ = &store_.noSample;
     guided_ = std::make_unique<Guided>(*this, s.guide);
     requested_ = std::make_unique<Requested>(*this, s);
+    gathered_ = std::make_unique<Photons>(*this, s);
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
         plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
@@ -56,9 +58,8 @@ BlockVertices::BlockVertices(const StageSet& s)
 BlockVertices::~BlockVertices() = default;
 
 bool BlockVertices::takesRays(const BatchContext& c) const {
-    return std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
-        return r.quiet || r.scattered >= limits::kPathDepth || (world_.photons_ && world_.photons_->pass(r.sample->sample));
-    });
+    return std::none_of(c.rays.begin(), c.rays.end(),
+                        [&](const PathRay& r) { return r.quiet || r.scattered >= limits::kPathDepth; });
 }
 
 /// Whether blocks can process all lobes that the kernel has requested at the points of the batch, with a weight that is not 0.
@@ -109,6 +110,7 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
 
 bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
+    gathered_->mark(c);
     select(c);
     counters_.ignored += ignored_;
     if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
@@ -117,6 +119,7 @@ bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     light(c);
     if (lastSkies_.any()) lastSkies(c);
     guided_->run(c, sched);
+    gathered_->take(c, sched);
     scatter(c, sched);
     if (!subsurface_.below.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
     return true;
@@ -258,8 +261,8 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.lights = (s.lighting && s.info->kind != SiteKind::Subsurface) || s.info->rowLights >= 0;
     if (s.lighting) s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind : &kSpecularKind;
     else
-        s.rays =
-            store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label, false, s.lights, s.info->trace->apart});
+        s.rays = store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label,
+                                s.info->trace->hemisphere && world_.globalMaps_, s.lights, s.info->trace->apart});
     s.diffuse = s.rays->type == RayType::Diffuse;
     s.begin(blocks_);
     s.walks = s.info->kind == SiteKind::Subsurface;

@@ -19,7 +19,7 @@ public:
     bool takes(const SurfaceBinding&, const BoundKernel&) const;
     /// Whether all requests of a batch whose kernel has run can be processed in blocks.
     bool takes(const BatchContext&) const;
-    /// Whether the rays that hit a batch can: no photons.
+    /// Whether the rays that hit a batch can.
     bool takesRays(const BatchContext&) const;
     /// Lights the points and sends the next rays; leaves shadow rays in ShadowRays::queue. Returns false, without effect, if a
     /// point needs processing on its own.
@@ -44,6 +44,7 @@ private:
     class ChosenLights; ///< chosenlights.h
     class Guided;       ///< blockguide.h
     class Requested;    ///< blockrequests.h
+    class Photons;      ///< blockphotons.h
     // blockvertices.cpp
     bool follow(BatchContext&, Sched&, bool waits);
     bool followLobes(BatchContext&, Sched&);
@@ -145,6 +146,7 @@ private:
     std::unique_ptr<ChosenLights> chosen_;
     std::unique_ptr<Guided> guided_;
     std::unique_ptr<Requested> requested_;
+    std::unique_ptr<Photons> gathered_;
 };
 
 } // namespace alpenglow::integrator

@@ -2,6 +2,7 @@
 #include "base/direction.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
+#include "integrator/blockphotons.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
@@ -328,7 +329,8 @@ Lanes BlockVertices::ChosenLights::gatherLobes(const Questions& q, const BlockVe
         from[i] = l.lobe[0] + at;
         for (int r = 0; r < 3; ++r) lobe_.weight[r][i] = l.weight[r][at];
         lobe_.chosen[i] = l.chosen[at];
-        const bool samples = (l.lights >> at & 1) && BlockVertices::samples(s, world_.lights_[size_t(a.light)]);
+        const BoundLight& light = world_.lights_[size_t(a.light)];
+        const bool samples = ((l.lights & ~b_.gathered_->bring(l, light)) >> at & 1) && BlockVertices::samples(s, light);
         asked |= Lanes(samples) << i;
     }
     lobe_.asked = lobe_.lights = asked & q.lights.asked;

@@ -53,9 +53,11 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
     if (!segmentEvents_.events.empty() || photons_.photonTrace() || !gathers_.gathered.empty() ||
         !accumulator_.traceSums.empty() || !blocks_.takesRays(c))
         return false;
-    // Rays with "falloff", or whose call requests distance and normal of the hit, need the point.
+    // Rays with "falloff", that gather photons of maps, or whose call requests distance and normal of the hit, need the point.
     for (const PathRay& r : c.rays)
-        if ((r.extra >= 0 && store_.extraOf(r).fade.fades()) || (r.first && !(r.counts && sched.plain()))) return false;
+        if (r.kind->gathersPhotons || (r.extra >= 0 && store_.extraOf(r).fade.fades()) ||
+            (r.first && !(r.counts && sched.plain())))
+            return false;
     c.points.clear();
     run(c);
     c.opaque = isOpaque(*c.batch);

@@ -44,7 +44,9 @@ struct alignas(64) LobeBlock {
     Lanes stays = 0;     ///< points whose lobe sends no ray for another reason than depth
     Lanes ended = 0;     ///< by select(): points where a depth limit ends the ray that would have been sent
     Lanes failed = 0;    ///< by select(): points whose probability is not finite; no ray is sent
-    void forget() { asked = lights = elsewhere = stays = ended = failed = 0; }
+    Lanes narrow = 0;    ///< points where photons treat the lobe as a mirror, though it is no delta
+    Lanes left = 0;      ///< of these: points where it leaves the lights that send photons to them
+    void forget() { asked = lights = elsewhere = stays = ended = failed = narrow = left = 0; }
 };
 
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.

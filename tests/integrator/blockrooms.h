@@ -15,11 +15,8 @@ inline Settings pathSettings() {
     s.hider = Hider::Path;
     return s;
 }
-inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = pathSettings()) {
-    s.maxDepth = maxDepth;
-    s.blocks = blocks;
-    s.lanes = lanes;
-    Scene scene(rib, s);
+/// What a camera sees of a scene.
+inline Traced view(Scene& scene) {
     std::vector<CameraRay> rays;
     const int side = nightly() ? 30 : 20;
     for (int i = 0; i < side * side; ++i) {
@@ -35,6 +32,13 @@ inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int max
     t.points = integrator.counters().points;
     t.cut = integrator.counters().depthCap;
     return t;
+}
+inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = pathSettings()) {
+    s.maxDepth = maxDepth;
+    s.blocks = blocks;
+    s.lanes = lanes;
+    Scene scene(rib, s);
+    return view(scene);
 }
 
 inline const char* const kLights =

@@ -1,0 +1,189 @@
+// Photons at vertices that are followed 16 at a time (integrator/blockphotons.h) have the bits of those that go one by one.
+#include "integrator/blockrooms.h"
+#include "photonmap/photongrid.h"
+#include "scene/lightpaths.h"
+#include "world/photonmaps.h"
+
+namespace blockphotons_test {
+
+using namespace alpenglow;
+using namespace alpenglow::integrator;
+using namespace alpenglow::integrator::testing;
+
+namespace {
+
+Settings withShipped(bool blocks, int lanes = 16) {
+    Settings s = pathSettings();
+    s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders");
+    s.blocks = blocks;
+    s.lanes = lanes;
+    return s;
+}
+
+/// Sets photons for samples 0 to 3; sample 4 has none.
+void setPasses(Scene& s, float width, float window) {
+    constexpr uint32_t kPhotons = 1000;
+    PhotonEmission emission(s.world, {.all = true, .sky = false, .caustics = true, .width = width}, s.diagnostics);
+    PhotonEmission::Thread thread(emission, s.diagnostics);
+    emission.tellLights();
+    std::vector<std::unique_ptr<photonmap::PhotonGrid>> grids;
+    for (uint32_t pass = 0; pass < 4; ++pass) {
+        std::vector<StoredPhoton> found;
+        ASSERT_TRUE(thread.emit(pass, 0, kPhotons, kPhotons, found, nullptr));
+        std::vector<photonmap::Photon> all;
+        std::vector<float> times;
+        for (const StoredPhoton& p : found) {
+            all.push_back(p.photon);
+            if (window > 0) times.push_back(p.time);
+        }
+        grids.push_back(std::make_unique<photonmap::PhotonGrid>(std::move(all), .5f, times, window));
+    }
+    setPhotonPasses(*s.world, 0, std::move(grids));
+}
+Traced gathering(const std::string& rib, const Settings& settings, float width = 0, float window = 0) {
+    Scene s(rib, settings);
+    setPasses(s, width, window);
+    return view(s);
+}
+
+const std::string kMirrors =
+    "AttributeBegin\nSurface \"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [1 1 1]\nPolygon \"P\" [-2 "
+    "-1.9 3  -2 -1.9 8  2 -1.9 8  2 -1.9 3]\nAttributeEnd\nAttributeBegin\nSurface \"slmaterial\" \"color diffusecolor\" [0 0 "
+    "0] \"color transmissive\" [1 1 1] \"float kn\" 1.5\nTranslate -.6 .6 3.4\nSphere .3 -.3 .3 360\nAttributeEnd\n"
+    "AttributeBegin\nSurface \"matte\"\nPolygon \"P\" [-9 -1.95 0  -9 -1.95 20  9 -1.95 20  9 -1.95 0]\nPolygon \"P\" [-9 -9 "
+    "8.8  -9 9 8.8  9 9 8.8  9 -9 8.8]\nAttributeEnd\n";
+
+/// Shaders with narrow lobes.
+void writeNarrow() {
+    const std::string begin = "() { normal n = faceforward(normalize(N), I); vector V = -normalize(I); float c = n . V; Oi = 1; ";
+    const auto write = [&](const std::string& name, const std::string& value) {
+        writeShader(name, "surface " + name + begin + "Ci = " + value + "; }\n");
+    };
+    write("roughmetal", "mix(color(.9, .7, .5), color 1, pow(1 - c, 3)) * trace(P, n, \"distribution\", \"cook-torrance\", "
+                        "\"roughness\", .06, \"samplearealights\", 1, \"type\", \"specular\")");
+    write("grazing", ".9 * (1 - c) * trace(P, reflect(-V, n), \"distribution\", \"slphong\", \"horizon\", n, \"exponent\", 300, "
+                     "\"samplearealights\", 1, \"type\", \"specular\")");
+    write("polished", "Cs * .3 * trace(P, reflect(-V, n), \"distribution\", \"slphong\", \"exponent\", 300, \"type\", "
+                      "\"specular\") + .2 * phong(n, V, 400) + .3 * diffuse(n)");
+    write("coated", "color(.4, .3, .2) * diffuse(n) + 8 * (1 - .5 * c) * specular(n, V, .02)");
+    write("roughglass", "trace(P, normalize(N), \"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, "
+                        "\"samplearealights\", 1, \"type\", \"specular\")");
+    writeShader("twocalls", "surface twocalls() { normal n = normalize(N); Oi = 1; if (I . n > 0) Ci = .9 * trace(P, n, "
+                            "\"distribution\", \"glass-ggx\", \"roughness\", .06, \"eta\", 1.5, \"samplearealights\", 1, "
+                            "\"type\", \"specular\"); else Ci = .8 * specular(n, -normalize(I), .01) + .2 * diffuse(n); }\n");
+}
+
+} // namespace
+
+TEST(BlockPhotons, AreGathered) {
+    writeNarrow();
+    writeGlossy();
+    writeFacets();
+    writeShader("waxen", "surface waxen() { Oi = 1; Ci = .3 * diffuse(faceforward(normalize(N), I)) + .5 * subsurface(P, N, "
+                         "\"reflectance\", color(.8, .6, .4), \"meanfreepath\", .1, \"ior\", 1.3); }\n");
+    writeShader("limited", R"(surface limited() {
+    normal n = faceforward(normalize(N), I);
+    Oi = 1;
+    Ci = .4 * trace(P, vector n, "distribution", "cosine", "samplecone", PI / 2, "samplearealights", 1, "maxdist", 2 + xcomp(P))
+         + .4 * trace(P + .1 * n, vector n, "distribution", "cosine", "samplecone", PI / 2, "subset", "")
+         + .1 * trace(P, vector n, "distribution", "cosine", "samplecone", PI / 2, "hitsides", "both");
+})");
+    struct Case {
+        std::string shader, more;
+        float width = 0;
+        double least = .33; ///< of all points, those in blocks
+    };
+    size_t turn = 0; // not nightly: every third has its turn with narrow kernels
+    const std::string clear = "Opacity .5 .6 .7\n", many = manyLights(6), fog = "Atmosphere \"fog\" \"distance\" 9\n";
+    for (const Case& c :
+         {Case{"matte", ""}, Case{"matte", many}, Case{"matte", clear}, Case{"matte", fog}, Case{"glossy", "", .5f},
+          Case{"facets", clear}, Case{"roughmetal", "", .1f}, Case{"roughmetal", many, .1f}, Case{"grazing", "", .1f},
+          Case{"polished", clear, .1f}, Case{"coated", "", .1f}, Case{"coated", many, .1f}, Case{"roughglass", "", .1f},
+          Case{"twocalls", "", .1f}, Case{"waxen", ""}, Case{"limited", ""}}) {
+        const std::string rib = roomOf("\"" + c.shader + "\"", kMirrors + c.more);
+        const Traced one = gathering(rib, withShipped(false), c.width), all = gathering(rib, withShipped(true), c.width);
+        const std::string what = c.shader + " " + c.more.substr(0, 20);
+        EXPECT_EQ(one.inBlocks, 0u);
+        EXPECT_GT(double(all.inBlocks), c.least * double(all.points)) << what;
+        EXPECT_EQ(differences(one, all), 0u) << what;
+        if (chosen(turn++, 3))
+            EXPECT_EQ(differences(one, gathering(rib, withShipped(true, 4), c.width)), 0u) << what << ", kernels of 4 lanes";
+        EXPECT_GT(differences(one, trace(rib, false, 16, -1, withShipped(false))), 20u) << what << ": no photons";
+    }
+}
+
+// Kernels that wait, light path outputs, motion, depth limits.
+TEST(BlockPhotons, AreGatheredWhateverIsAsked) {
+    writeNarrow();
+    writeShader("threshold", R"(surface threshold() {
+    normal n = faceforward(normalize(N), I);
+    color light = trace(P, vector(n), "distribution", "cosine", "samplecone", PI / 2, "samplearealights", 1);
+    Ci = Cs * (comp(light, 1) > .1 ? light : .3 * light);
+    Oi = 1;
+})");
+    Diagnostics d;
+    Settings paths = withShipped(true), shallow = paths, outputs = paths;
+    paths.lightPaths =
+        std::make_shared<scene::LightPaths>(std::vector<scene::LightPaths::Source>{{"C<RD>S*L", {}}, {"C.*<RD>.+L", {}}}, d);
+    ASSERT_EQ(d.all().size(), 0u);
+    shallow.maxDepth = 2;
+    outputs.firstSeen = true;
+    const std::string moving = "MotionBegin [0 1]\nTranslate 0 0 0\nTranslate .2 0 0\nMotionEnd\n";
+    struct Case {
+        const char* shader;
+        const Settings& settings;
+        float width = .1f, window = 0;
+    };
+    for (const Case& c : {Case{"threshold", paths}, Case{"coated", paths}, Case{"twocalls", shallow}, Case{"coated", outputs},
+                          Case{"matte", paths, 0, .3f}}) {
+        const std::string rib =
+            (c.window > 0 ? "Shutter 0 1\n" : "") +
+            roomOf("\"" + std::string(c.shader) + "\"",
+                   (c.window > 0 ? moving : "") + kMirrors + "Attribute \"trace\" \"int maxspeculardepth\" 3\n");
+        Settings single = c.settings;
+        single.blocks = false;
+        const Traced one = gathering(rib, single, c.width, c.window), all = gathering(rib, c.settings, c.width, c.window);
+        EXPECT_EQ(one.inBlocks, 0u);
+        EXPECT_GT(double(all.inBlocks), .33 * double(all.points)) << c.shader;
+        EXPECT_EQ(differences(one, all), 0u) << c.shader;
+    }
+}
+
+// indirectdiffuse() by way of the photon maps of the surfaces that its rays meet.
+TEST(BlockPhotons, OfMapsAreGathered) {
+    writeShader("gathering", R"(surface gathering() {
+    normal n = faceforward(normalize(N), I);
+    Oi = 1;
+    Ci = Cs * (.5 * diffuse(n) + .5 * indirectdiffuse(P, n, 2));
+})");
+    const std::string rib = roomOf("\"gathering\"", "Attribute \"visibility\" \"int diffuse\" 1 \"int specular\" 1\nAttribute "
+                                                    "\"photon\" \"string globalmap\" \"room.photons\"\n");
+    for (const Hider h : {Hider::Path, Hider::Raytrace}) {
+        Settings blocks = withShipped(true);
+        blocks.hider = h;
+        Settings single = blocks;
+        single.blocks = false;
+        const auto traced = [&](const Settings& settings, bool photons) {
+            Scene s(rib, settings);
+            std::vector<photonmap::Photon> all;
+            for (int i = 0; photons && i < 4000; ++i) { // on the walls
+                photonmap::Photon& p = all.emplace_back();
+                const float x = -2 + .04f * float(i % 100), z = float(i / 100) * .2f + 1;
+                p.P = i % 2 ? Vec3(x, -2, z) : Vec3(x, z - 3, 9);
+                p.power = Color(.01f * float(1 + i % 3), .02f, .01f);
+                p.from = photonmap::packUnit(i % 2 ? Vec3(0, 1, 0) : Vec3(0, 0, -1));
+                p.normal = p.from;
+                p.reflected[0] = p.reflected[1] = p.reflected[2] = 200;
+            }
+            setPhotonMap(*s.world, "room.photons", std::move(all));
+            return view(s);
+        };
+        const Traced one = traced(single, true), all = traced(blocks, true);
+        EXPECT_EQ(one.inBlocks, 0u);
+        EXPECT_GT(all.inBlocks, all.points / 3) << int(h);
+        EXPECT_EQ(differences(one, all), 0u) << int(h);
+        EXPECT_GT(differences(one, traced(single, false)), 20u) << int(h) << ": no photons";
+    }
+}
+
+} // namespace blockphotons_test

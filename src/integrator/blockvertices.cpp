@@ -39,7 +39,7 @@ BlockVertices::BlockVertices(const StageSet& s)
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
     const bool rules = rules_.lightsAtRequests && !set.lightOnly && set.indirect;
     const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && !world_.traceSubsets_;
+    usable_ = set.blocks && rules && lights;
     usable_ &= world_.accel_ != nullptr; // requires a complete world
     noSample_ = &store_.noSample;
     guided_ = std::make_unique<Guided>(*this, s.guide);
@@ -77,13 +77,19 @@ static bool asksBlocks(const BatchContext& c) {
     });
 }
 
+/// Whether rays of a kernel hit the set of shapes that the surface names (Attribute "grouping" "tracesubset").
+static bool tracesSets(const WorldImpl& w, const BoundKernel& kernel) {
+    const auto traces = [](const SiteInfo& s) { return s.kind == SiteKind::Trace; };
+    return w.traceSubsets_ && std::any_of(kernel.sites.begin(), kernel.sites.end(), traces);
+}
+
 bool BlockVertices::takes(const BatchContext& c) const {
-    if (!usable_ || !plain_[size_t(c.binding->lightList)] || !asksBlocks(c)) return false;
+    if (!usable_ || !plain_[size_t(c.binding->lightList)] || !asksBlocks(c) || tracesSets(world_, *c.bound)) return false;
     return !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
-    return usable_ && rules_.pickOne && kernel.blocks && plain_[size_t(b.lightList)];
+    return usable_ && rules_.pickOne && kernel.blocks && plain_[size_t(b.lightList)] && !tracesSets(world_, kernel);
 }
 
 bool BlockVertices::run(BatchContext& c, Sched& sched) { return c.emits.empty() || follow(c, sched, false); }

@@ -201,6 +201,28 @@ TEST_F(PhotonHider, GuideCanBeRefused) {
     EXPECT_EQ(stats["guide"]["rays"], 0);
 }
 
+// A wide lamp that a room sees through a small hole in its ceiling.
+TEST_F(PhotonHider, LightGuideCanBeRefused) {
+    const auto room = [](const std::string& hider) {
+        return "Format 200 150 1\nProjection \"perspective\" \"fov\" 70\nHider \"path\" " + hider +
+               "\nTranslate 0 -1 1.9\nWorldBegin\nSides 2\n"
+               "AttributeBegin Sides 1 AreaLightSource \"slrect\" 1 \"float intensity\" 5 Surface \"constant\" Color 0 0 0 "
+               "Polygon \"P\" [-3 3 -3  3 3 -3  3 3 3  -3 3 3] AttributeEnd\nIlluminate 1 1\n"
+               "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1 Color .7 .7 .7\n"
+               "PointsGeneralPolygons [2] [4 4] [0 1 2 3 4 5 6 7] \"P\" [-2 2 -2  2 2 -2  2 2 2  -2 2 2  -.3 2 -.3  .3 2 -.3  "
+               ".3 2 .3  -.3 2 .3]\n"
+               "PointsPolygons [4 4 4 4 4] [0 1 2 3  0 4 5 1  3 2 6 7  0 3 7 4  1 5 6 2] \"P\" [-2 0 -2  2 0 -2  2 0 2  -2 0 2  "
+               "-2 2 -2  2 2 -2  2 2 2  -2 2 2]\nWorldEnd\n";
+    };
+    for (const bool refused : {false, true}) {
+        write("room.rib", room(refused ? "\"int guide\" 0" : ""));
+        run("render room.rib -q --spp 4 -o a.exr --stats s.json", "2>&1");
+        EXPECT_EQ(status, 0);
+        const auto stats = nlohmann::json::parse(read(dir / "s.json"));
+        EXPECT_EQ(stats["lightGuide"]["used"] > 0, !refused) << stats["lightGuide"];
+    }
+}
+
 // Photons that are to teach paths alone print nothing, bake nothing and are not complained of.
 TEST_F(PhotonHider, LearningIsSilent) {
     write("says.sl",

@@ -10,6 +10,7 @@
 #include "world/arealight.h"
 #include "world/sites.h"
 #include <algorithm>
+#include <span>
 
 namespace alpenglow::integrator {
 
@@ -40,8 +41,8 @@ struct BlockLobes {
     /// Makes room for a batch and forgets the previous one: no lobe is asked for.
     void begin(size_t blocks) {
         lobes.resize(std::max(lobes.size(), blocks));
-        for (size_t b = 0; b < blocks; ++b)
-            lobes[b].asked = lobes[b].lights = lobes[b].elsewhere = lobes[b].ended = lobes[b].narrow = lobes[b].left = 0;
+        for (LobeBlock& l : std::span(lobes).first(blocks))
+            l.asked = l.lights = l.elsewhere = l.ended = l.narrow = l.left = l.boundless = 0;
         walks = apart = direct = false;
         nth = 0;
         narrow.clear();

@@ -1,5 +1,6 @@
 // Continuation rays of paths from vertices in blocks.
 #include "integrator/accumulator.h"
+#include "integrator/blockflight.h"
 #include "integrator/blockguide.h"
 #include "integrator/blockphotons.h"
 #include "integrator/blockvertices.h"
@@ -203,7 +204,9 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         }
         r.extra[i] = -1;
         const int32_t share = shareOf(c.rays[b * kBlock + size_t(i)]);
-        const float indirect = (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(s, b * kBlock + size_t(i));
+        const float indirect = flight_->on() // then the ray's weight includes it
+                                   ? 1
+                                   : (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(s, b * kBlock + size_t(i));
         const bool fades = !s.options.empty() && s.options[b * kBlock + size_t(i)].fade.fades();
         if (indirect == 1 && share < 0 && !c.between && !fades) continue;
         RayExtra extra;

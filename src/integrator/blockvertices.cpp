@@ -1,5 +1,6 @@
 // Vertices in blocks: from the requests of a kernel to lobes, and the probabilities of following them.
 #include "integrator/accumulator.h"
+#include "integrator/blockflight.h"
 #include "integrator/blockguide.h"
 #include "integrator/blockphotons.h"
 #include "integrator/chosenlights.h"
@@ -41,6 +42,7 @@ BlockVertices::BlockVertices(const StageSet& s)
     usable_ &= world_.accel_ != nullptr; // requires a complete world
     guided_ = std::make_unique<Guided>(*this, s.guide);
     gathered_ = std::make_unique<Photons>(*this, s);
+    flight_ = std::make_unique<Flight>(*this, s);
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
         plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
@@ -59,8 +61,9 @@ bool BlockVertices::takesRays(const BatchContext& c) const {
 }
 
 bool BlockVertices::takes(const BatchContext& c) const {
-    if (!usable_ || !plain_[size_t(c.binding->lightList)] || !asksBlocks(c)) return false;
-    return !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
+    if (!asksBlocks(c) || c.aside || c.between || c.below) return false;
+    if (flight_->on()) return flight_->fits(c);
+    return usable_ && plain_[size_t(c.binding->lightList)] && takesRays(c);
 }
 
 /// Whether blocks can process all lobes that the kernel has requested at the points of the batch, with a weight that is not 0.
@@ -82,11 +85,19 @@ bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) co
     return usable_ && rules_.pickOne && kernel.blocks && plain_[size_t(b.lightList)];
 }
 
-bool BlockVertices::run(BatchContext& c, Sched& sched) { return c.emits.empty() || follow(c, sched, false); }
+bool BlockVertices::run(BatchContext& c, Sched& sched) { return (c.emits.empty() && !flight_->on()) || follow(c, sched, false); }
 
 bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
     begin(c, waits);
-    return loadVertices(c) && findSites(c) && request(c) && followLobes(c, sched);
+    if (!loadVertices(c) || !findSites(c) || !request(c)) return false;
+    return (!flight_->on() || flight_->takeModels(c, false)) && followLobes(c, sched);
+}
+
+bool BlockVertices::runModels(BatchContext& c, Sched& sched) {
+    if (!flight_->fits(c)) return false;
+    begin(c, false);
+    count_ = 0;
+    return loadVertices(c) && flight_->takeModels(c, true) && followLobes(c, sched);
 }
 
 void BlockVertices::begin(const BatchContext& c, bool waits) {
@@ -103,6 +114,7 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
 
 bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
+    if (flight_->on()) return flight_->follow(c, sched);
     gathered_->mark(c);
     if (!select(c)) return false;
     counters_.ignored += ignored_;
@@ -186,7 +198,7 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
             v.P[q][k] = p.P[q];
             v.n[q][k] = p.n[q];
             v.I[q][k] = rows ? c.ways[size_t(q) * points_ + i] : c.points[i].I[q];
-            v.clear[q][k] = v.through ? c.clear[i][q] : 0;
+            v.clear[q][k] = v.beyond[q][k] = v.through ? c.clear[i][q] : 0;
         }
         v.error[k] = p.pError;
         v.bias[k] = s.bias;

@@ -34,6 +34,8 @@ public:
     /// light.
     bool runExits(BatchContext&, std::span<const float> indirect, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
+    /// For photons, at surfaces that scatter by a photon shading model alone: those without one as matte ones.
+    bool runModels(BatchContext&, Sched&);
     /// Samples one light for such points and evaluates their lobes toward it, to `found`. False: not possible, no effect.
     bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
 
@@ -42,6 +44,7 @@ private:
     class ChosenLights; ///< chosenlights.h
     class Guided;       ///< blockguide.h
     class Photons;      ///< blockphotons.h
+    class Flight;       ///< blockflight.h
     // blockvertices.cpp
     static bool asksBlocks(const BatchContext&);
     bool follow(BatchContext&, Sched&, bool waits);
@@ -147,6 +150,7 @@ private:
     std::unique_ptr<ChosenLights> chosen_;
     std::unique_ptr<Guided> guided_;
     std::unique_ptr<Photons> gathered_;
+    std::unique_ptr<Flight> flight_;
 };
 
 } // namespace alpenglow::integrator

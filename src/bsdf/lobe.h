@@ -103,6 +103,8 @@ public:
     /// A row of a lobe (LobeRow), or three of them; only those that its kind reads are set.
     float row(Place p, int r) const { return block(p).rows[r][lane(p)]; }
     Vec3 triple(Place p, int r) const { return {row(p, r), row(p, r + 1), row(p, r + 2)}; }
+    /// The first row of a lobe; the others lie kLobeBlock floats apart.
+    const float* rowsAt(Place p) const { return &block(p).rows[0][lane(p)]; }
     /// Queries the value for light from w, unit; evaluate() answers all queries.
     void ask(Place p, const Vec3& w) {
         Block& b = block(p);

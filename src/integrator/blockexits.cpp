@@ -1,6 +1,5 @@
 // Subsurface scattering for vertices in blocks: walks that lobes select, and the light at their exits.
-#include "integrator/blockvertices.h"
-#include "integrator/photonstage.h"
+#include "integrator/blockflight.h"
 #include "integrator/subsurfacewalks.h"
 #include "integrator/surfacepoints.h"
 #include "services/random.h"
@@ -34,14 +33,16 @@ void BlockVertices::walkBelow(size_t b, BatchContext& c) {
 }
 
 bool BlockVertices::runExits(BatchContext& c, std::span<const float> indirect, Sched& sched) {
-    const bool plain = usable_ && rules_.pickOne && plain_[size_t(c.binding->lightList)];
-    if (!plain || photons_.photonTrace() || !takesRays(c)) return false;
-    if (!std::all_of(indirect.begin(), indirect.end(), [](float x) { return x > 0; })) return false; // guide rays need light
+    const bool flies = flight_->on(), plain = !flies && usable_ && rules_.pickOne && plain_[size_t(c.binding->lightList)];
+    if (flies ? !flight_->fits(c) : !plain || !takesRays(c)) return false;
+    if (!flies && !std::all_of(indirect.begin(), indirect.end(), [](float x) { return x > 0; }))
+        return false; // guide rays need light
     begin(c, false);
     if (!loadVertices(c)) return false;
     indirect_ = indirect;
     beginExits(c);
-    return followLobes(c, sched);
+    followLobes(c, sched);
+    return true;
 }
 
 /// Sets the lobes: diffuse about the normal.

@@ -11,6 +11,7 @@
 #include "world/arealight.h"
 #include "world/sites.h"
 #include <algorithm>
+#include <span>
 
 namespace alpenglow::integrator {
 
@@ -39,6 +40,8 @@ struct BlockLobes {
     const LobeVertex* requestAt(size_t point) const { return requests.empty() ? nullptr : requests[point]; }
     /// How many rays the request at a point asks for, if all lobes are followed.
     int samplesAt(size_t point) const { return options.empty() ? 1 : options[point].samples; }
+    /// Whether its lobe samples lights, if it is no delta.
+    bool lightsAt(size_t point) const { return requests.empty() || !requests[point] ? lights : requests[point]->lights; }
     /// Rays that its lobe sends.
     const RayKind& raysAt(size_t point) const { return requests.empty() || !requests[point] ? *rays : *requests[point]->rays; }
     /// By point, for further calls of a call site: how many of the earlier ones had a weight.

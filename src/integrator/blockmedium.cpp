@@ -1,8 +1,7 @@
 // Points inside scattering media, in blocks: their lobe is the phase function of the medium, without a kernel (medium.h).
-#include "integrator/blockvertices.h"
+#include "integrator/blockflight.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/medium.h"
-#include "integrator/photonstage.h"
 #include "services/random.h"
 #include <algorithm>
 #include <bit>
@@ -12,18 +11,19 @@ namespace alpenglow::integrator {
 /// Whether light kernels of a binding read more at points inside media than rows hold.
 bool BlockVertices::needsPoints(const SurfaceBinding& b) const {
     const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
-    return !usable_ || !rules_.pickOne || paths_.automaton || !list.chooser.empty() ||
+    return flight_->on() || !usable_ || !rules_.pickOne || paths_.automaton || !list.chooser.empty() ||
            !std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) { return inRows_[size_t(l)] != 0; });
 }
 
 bool BlockVertices::run(BatchContext& c, const Homogeneous& h, std::span<const Vec3> beside, Sched& sched) {
     const SurfaceBinding& b = *c.binding;
-    const bool plain = usable_ && rules_.pickOne && plain_[size_t(b.lightList)];
-    if (!plain || photons_.photonTrace() || !takesRays(c)) return false;
+    const bool flies = flight_->on(), plain = !flies && usable_ && rules_.pickOne && plain_[size_t(b.lightList)];
+    if (flies ? !flight_->fits(c) : !plain || !takesRays(c)) return false;
     begin(c, false);
     loadVertices(c);
     beginMedium(beside, h.anisotropy);
-    return followLobes(c, sched);
+    followLobes(c, sched);
+    return true;
 }
 
 bool BlockVertices::light(const BatchContext& c, const Homogeneous& h, const BoundLight& light, std::vector<BlockLit>& found) {

@@ -1,6 +1,7 @@
 // Parameters of trace() that only some calls have, point by point: "bias", "maxdist", "weight", "falloff", an origin of its own.
 #include "integrator/blockvertices.h"
 #include "integrator/occlusioncalls.h"
+#include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/surfacepoints.h"
 #include <algorithm>
@@ -31,7 +32,7 @@ bool BlockVertices::readOptions(Site& s, BatchContext& c) {
                 const int from = info.rows[0];
                 o.from = {row(from), row(from + 1), row(from + 2)};
             }
-            if (o.importance > 0 && rules_.pickOne) continue;
+            if (photons_.photonTrace() || (o.importance > 0 && rules_.pickOne)) continue; // photons ignore "weight"
             surfaces_.pointsOfRows(c);
             o.samples = occlusion_.samplesOf(samplesAskedOf(info, row), c.points[point].shape, info, c);
             if (o.importance > 0) continue;

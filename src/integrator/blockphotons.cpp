@@ -2,6 +2,7 @@
 #include "integrator/accumulator.h"
 #include "integrator/guiderays.h"
 #include "integrator/lightpathstates.h"
+#include "integrator/photonjob.h"
 #include "integrator/photonstage.h"
 #include "integrator/surfacepoints.h"
 #include <algorithm>
@@ -106,7 +107,7 @@ void BlockVertices::Photons::findNear(const photonmap::PhotonGrid& grid, size_t 
     grid.within(p.displaced ? p.displacedP : p.P, time, [&](const photonmap::Photon& photon) {
         if (!(std::fabs(dot(photonmap::unpackUnit(photon.normal), n)) > 0.7f)) return;
         const Vec3 w = photon.direction();
-        near_.push_back({w, photon.power * (perArea / std::max(std::fabs(dot(w, n)), 1e-4f))});
+        near_.push_back({w, photon.power * (perArea / safeCosine(dot(w, n)))});
     });
 }
 

@@ -16,6 +16,10 @@ public:
     void take(BatchContext&, Sched&);
     /// Sets the trail of the next rays of a block.
     void keep(size_t block, const BatchContext&);
+    /// Whether photons treat a lobe as a mirror although it is no delta lobe. below: PhotonStage::narrowBelow().
+    bool isNarrow(const Site&, size_t point, float below, BatchContext&) const;
+    /// Whether photons continue along a lobe as along a mirror, once LobeBlock::narrow is set.
+    bool mirrors(const Site&, size_t point, const BatchContext&) const;
 
 private:
     struct Near {
@@ -24,8 +28,6 @@ private:
     };
     bool seesAll(const Site&, size_t point, const BatchContext&) const;
     bool spreads(const Site&, size_t point, const BatchContext&) const;
-    bool mirrors(const Site&, size_t point, const BatchContext&) const;
-    bool isNarrow(const Site&, size_t point, float below, BatchContext&) const;
     uint8_t trailBehind(const Site&, size_t point, const BatchContext&) const;
     void findNear(const photonmap::PhotonGrid&, size_t point, const BatchContext&);
     Color givenBack(const Site&, size_t point) const;

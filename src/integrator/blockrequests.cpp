@@ -2,6 +2,7 @@
 #include "integrator/blockrequests.h"
 #include "base/memory.h"
 #include "integrator/accumulator.h"
+#include "integrator/blockflight.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/occlusioncalls.h"
 #include "integrator/photonstage.h"
@@ -22,8 +23,8 @@ BlockVertices::Requested::Requested(BlockVertices& b, const StageSet& s)
     : b_(b), world_(b.world_), requests_(s.requests), unshadowed_(s) {}
 
 bool BlockVertices::Requested::takes(const BatchContext& c) const {
-    if (!b_.usable_ || !b_.plain_[size_t(world_.bindings_[size_t(c.bindings[0])].lightList)] || b_.photons_.photonTrace())
-        return false;
+    if (b_.flight_->on()) return b_.flight_->fits(c);
+    if (!b_.usable_ || !b_.plain_[size_t(world_.bindings_[size_t(c.bindings[0])].lightList)]) return false;
     const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[0])];
     const auto hasOptions = [](const LobeVertex& l) {
         return l.samples != 1 || l.bias >= 0 || l.base > 0 || l.elsewhere || l.importance != 1 || l.maxDistance < 1e38f ||
@@ -43,25 +44,30 @@ bool BlockVertices::Requested::takes(const BatchContext& c) const {
 bool BlockVertices::runRequests(BatchContext& c, Sched& sched) { return requested_->run(c, sched); }
 
 bool BlockVertices::Requested::run(BatchContext& c, Sched& sched) {
-    if (requests_.lobes.empty()) return true;
+    if (requests_.lobes.empty() && !b_.flight_->on()) return true;
     if (!takes(c)) return false;
-    b_.begin(c, requests_.lobes[0].ownsTarget);
-    lobes_.swap(requests_.lobes);
     std::vector<AccumulatorId> targets = c.targets;
-    b_.before_.assign(b_.waits_ ? b_.points_ : 0, 0);
-    for (const LobeVertex& l : lobes_) {
-        targets[size_t(l.point)] = l.target;
-        if (b_.waits_) b_.before_[size_t(l.point)] = l.before;
-        b_.several_ |= l.ownsTarget && l.samples > 1;
-    }
+    for (const LobeVertex& l : requests_.lobes) targets[size_t(l.point)] = l.target;
     c.targets.swap(targets);
-    b_.loadVertices(c);
-    take(c);
-    requests_.clear();
+    load(c);
+    if (b_.flight_->on()) b_.flight_->takeModels(c, false);
     b_.followLobes(c, sched);
     c.targets.swap(targets);
     b_.counters_.inBlocks += b_.points_;
     return true;
+}
+
+void BlockVertices::Requested::load(BatchContext& c) {
+    b_.begin(c, !requests_.lobes.empty() && requests_.lobes[0].ownsTarget);
+    lobes_.swap(requests_.lobes);
+    b_.before_.assign(b_.waits_ ? b_.points_ : 0, 0);
+    for (const LobeVertex& l : lobes_) {
+        if (b_.waits_) b_.before_[size_t(l.point)] = l.before;
+        b_.several_ |= l.ownsTarget && l.samples > 1;
+    }
+    b_.loadVertices(c);
+    take(c);
+    requests_.clear();
 }
 
 void BlockVertices::Requested::take(BatchContext& c) {

@@ -12,6 +12,8 @@ public:
     Requested(BlockVertices&, const StageSet&);
     /// BlockVertices::runRequests().
     bool run(BatchContext&, Sched&);
+    /// Fills the blocks with a batch's points and its requests, which it removes.
+    void load(BatchContext&);
     /// The batch has none.
     void clear() { lobes_.clear(); }
     bool empty() const { return lobes_.empty(); }

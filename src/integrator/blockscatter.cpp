@@ -1,5 +1,6 @@
 // Continuation rays of paths from vertices in blocks.
 #include "integrator/accumulator.h"
+#include "integrator/blockflight.h"
 #include "integrator/blockguide.h"
 #include "integrator/blockphotons.h"
 #include "integrator/blockrequests.h"
@@ -196,7 +197,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         const LobeVertex* const request = s.requestAt(b * kBlock + size_t(i));
         const uint64_t kind = reinterpret_cast<uintptr_t>(&s.raysAt(b * kBlock + size_t(i)));
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
-        const bool sampled = (request ? request->lights : s.lights) &&
+        const bool sampled = s.lightsAt(b * kBlock + size_t(i)) &&
                              !((next_.single | s.lobes[b].elsewhere) >> i & 1); // then emission that it hits is weighted by MIS
         r.pdf[i] = sampled ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
         r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
@@ -210,8 +211,11 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
             r.media[0][i] = uint32_t(media), r.media[1][i] = uint32_t(uint64_t(media) >> 32);
         }
         r.extra[i] = -1;
-        const int32_t share = shareOf(s, b * kBlock + size_t(i), c.rays[b * kBlock + size_t(i)]);
-        const float indirect = (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(s, b * kBlock + size_t(i));
+        const size_t point = b * kBlock + size_t(i);
+        const int32_t share = shareOf(s, point, c.rays[point]);
+        const float indirect = flight_->on() // then the ray's weight includes it
+                                   ? 1
+                                   : (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(s, point);
         const bool fades = !s.options.empty() && s.options[b * kBlock + size_t(i)].fade.fades();
         if (indirect == 1 && share < 0 && !c.between && !fades && !request) continue;
         RayExtra extra;
@@ -219,7 +223,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];
         extra.indirect = indirect;
         extra.share = share;
-        if (request) requested_->addToRay(*request, extra, i, c);
+        if (request && !flight_->on()) requested_->addToRay(*request, extra, i, c);
         r.extra[i] = store_.newExtra(extra);
     }
     guided_->keep(b, c);

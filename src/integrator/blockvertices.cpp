@@ -1,5 +1,6 @@
 // Vertices in blocks: from the requests of a kernel to lobes, and the probabilities of following them.
 #include "integrator/accumulator.h"
+#include "integrator/blockflight.h"
 #include "integrator/blockguide.h"
 #include "integrator/blockphotons.h"
 #include "integrator/blockrequests.h"
@@ -45,6 +46,7 @@ BlockVertices::BlockVertices(const StageSet& s)
     guided_ = std::make_unique<Guided>(*this, s.guide);
     requested_ = std::make_unique<Requested>(*this, s);
     gathered_ = std::make_unique<Photons>(*this, s);
+    flight_ = std::make_unique<Flight>(*this, s);
     if (!usable_) return;
     for (const WorldImpl::LightList& list : world_.lightLists_)
         plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
@@ -84,19 +86,33 @@ static bool tracesSets(const WorldImpl& w, const BoundKernel& kernel) {
 }
 
 bool BlockVertices::takes(const BatchContext& c) const {
-    if (!usable_ || !plain_[size_t(c.binding->lightList)] || !asksBlocks(c) || tracesSets(world_, *c.bound)) return false;
-    return !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
+    if (!asksBlocks(c) || c.aside || c.between || c.below || tracesSets(world_, *c.bound)) return false;
+    if (flight_->on()) return flight_->fits(c);
+    return usable_ && plain_[size_t(c.binding->lightList)] && takesRays(c);
 }
 
 bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
     return usable_ && rules_.pickOne && kernel.blocks && plain_[size_t(b.lightList)] && !tracesSets(world_, kernel);
 }
 
-bool BlockVertices::run(BatchContext& c, Sched& sched) { return c.emits.empty() || follow(c, sched, false); }
+bool BlockVertices::run(BatchContext& c, Sched& sched) { return (c.emits.empty() && !flight_->on()) || follow(c, sched, false); }
 
 bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
     begin(c, waits);
-    return loadVertices(c) && findSites(c) && request(c) && followLobes(c, sched);
+    if (!loadVertices(c) || !findSites(c) || !request(c)) return false;
+    if (flight_->on()) flight_->takeModels(c, false);
+    followLobes(c, sched);
+    return true;
+}
+
+bool BlockVertices::runModels(BatchContext& c, Sched& sched) {
+    if (!flight_->fits(c)) return false;
+    begin(c, false);
+    count_ = 0;
+    loadVertices(c);
+    flight_->takeModels(c, true);
+    followLobes(c, sched);
+    return true;
 }
 
 void BlockVertices::begin(const BatchContext& c, bool waits) {
@@ -114,8 +130,9 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
     rays_.resize(std::max(rays_.size(), blocks_));
 }
 
-bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
+void BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
+    if (flight_->on()) return flight_->follow(c, sched);
     gathered_->mark(c);
     select(c);
     counters_.ignored += ignored_;
@@ -128,7 +145,6 @@ bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     gathered_->take(c, sched);
     scatter(c, sched);
     if (!subsurface_.below.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
-    return true;
 }
 
 /// Copies points and rays from structures to rows.
@@ -202,7 +218,7 @@ bool BlockVertices::loadPoints(size_t b, const BatchContext& c) {
             v.P[q][k] = P[q];
             v.n[q][k] = p.n[q];
             v.I[q][k] = rows ? c.ways[size_t(q) * points_ + i] : c.points[i].I[q];
-            v.clear[q][k] = v.through ? c.clear[i][q] : 0;
+            v.clear[q][k] = v.beyond[q][k] = v.through ? c.clear[i][q] : 0;
         }
         v.error[k] = p.pError;
         v.bias[k] = s.bias;

@@ -36,6 +36,8 @@ public:
     /// false, without effect, if they need vertexsampling.h.
     bool runRequests(BatchContext&, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
+    /// For photons, at surfaces that scatter by a photon shading model alone: those without one as matte ones.
+    bool runModels(BatchContext&, Sched&);
     /// Samples one light for such points and evaluates their lobes toward it, to `found`. False: not possible, no effect.
     bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
 
@@ -45,9 +47,10 @@ private:
     class Guided;       ///< blockguide.h
     class Requested;    ///< blockrequests.h
     class Photons;      ///< blockphotons.h
+    class Flight;       ///< blockflight.h
     // blockvertices.cpp
     bool follow(BatchContext&, Sched&, bool waits);
-    bool followLobes(BatchContext&, Sched&);
+    void followLobes(BatchContext&, Sched&);
     void begin(const BatchContext&, bool waits);
     bool loadVertices(const BatchContext&);
     void takeRays(const RayBlock&, bool between);
@@ -147,6 +150,7 @@ private:
     std::unique_ptr<Guided> guided_;
     std::unique_ptr<Requested> requested_;
     std::unique_ptr<Photons> gathered_;
+    std::unique_ptr<Flight> flight_;
 };
 
 } // namespace alpenglow::integrator

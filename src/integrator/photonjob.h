@@ -2,6 +2,8 @@
 #pragma once
 #include "integrator/batchcontext.h"
 #include "world/storedphoton.h"
+#include <algorithm>
+#include <cmath>
 
 namespace alpenglow::integrator {
 
@@ -105,17 +107,20 @@ struct PhotonDepths {
     void to(shading::PathRay& r) const { r.asked = uint16_t(diffuse << 8 | specular); }
 };
 
+/// Absolute value of a cosine, large enough to divide by it.
+inline float safeCosine(float x) { return std::max(std::fabs(x), 1e-4f); }
+
 /// Sine of the angle between two unit vectors.
 inline float sine(const Vec3& w, const Vec3& n) { return length(cross(w, n)); }
 
 /// Photons that arrive within this angle of the normal, in radians, are tilted (photonscatter.cpp).
 inline constexpr float kLeastTilt = 1e-3f;
 
-/// Factor from the radiance that a lobe scatters along the reverse path to the power of the photon (adjoint correction): lobe at
-/// `l`; `from`: direction to where the photon came from; `to`: where it goes; both unit and away from the surface; n: its unit
-/// normal; N: shading normal.
-float photonFactor(const BsdfBatch&, BsdfBatch::Place, const LobeKind&, bool delta, const Vec3& from, const Vec3& to,
-                   const Vec3& n, const Vec3& N);
+/// Factor from the radiance that a lobe scatters along the reverse path to the power of the photon (adjoint correction). lobe:
+/// its first row, the others kLobeBlock floats apart; `from`: direction to where the photon came from; `to`: where it goes; both
+/// unit and away from the surface; n: its unit normal; N: shading normal.
+float photonFactor(const float* lobe, const LobeKind&, bool delta, const Vec3& from, const Vec3& to, const Vec3& n,
+                   const Vec3& N);
 
 /// Transmittance of the volume before a photon's hit.
 inline Color leftOfPhoton(const BatchContext& c, size_t point) {

@@ -1,6 +1,7 @@
 // Surfaces with a photon shading model (Attribute "photon" "shadingmodel"), and photon map lookups at surfaces.
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
+#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/emission.h"
 #include "integrator/lightpathstates.h"
@@ -26,12 +27,10 @@ PhotonTrace& PhotonStage::begin() {
 }
 
 PhotonStage::PhotonStage(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), paths_(s.paths), media_(s.media), store_(s.store), requests_(s.requests),
-      shading_(s.shading), transparency_(s.transparency), vertexLight_(s.vertexLight) {}
+    : Stage(s.context), accumulator_(s.accumulator), blocks_(s.blocks), paths_(s.paths), media_(s.media), store_(s.store),
+      requests_(s.requests), shading_(s.shading), transparency_(s.transparency), vertexLight_(s.vertexLight) {}
 
 namespace {
-
-constexpr uint32_t kModelSite = 0xfff00; ///< larger than any call site of a shader
 
 /// Fresnel reflectance for unpolarised light; `index`: index of refraction on the incident side over that on the other side.
 float reflectance(float cosine, float index, Vec3 in, Vec3 n, Vec3& refracted) {
@@ -58,50 +57,56 @@ void sayNoCaustics(const SurfaceBinding& b, Diagnostics& d) {
 
 } // namespace
 
-void PhotonStage::takeModels(BatchContext& c, bool all) {
+PhotonModel PhotonStage::modelAt(const BatchContext& c, size_t point, bool all) const {
     const bool models = photonTrace_->job->models;
-    const auto modelAt = [&](size_t point) {
-        const PhotonModel m = models ? world_.bindings_[size_t(c.bindings[point])].photons.model : PhotonModel::Shader;
-        return m == PhotonModel::Shader && all ? PhotonModel::Matte : m;
-    };
-    std::erase_if(requests_.lobes, [&](const LobeVertex& l) { return modelAt(size_t(l.point)) != PhotonModel::Shader; });
+    const PhotonModel m = models ? world_.bindings_[size_t(c.bindings[point])].photons.model : PhotonModel::Shader;
+    return m == PhotonModel::Shader && all ? PhotonModel::Matte : m;
+}
+
+int PhotonStage::lobesOfModel(PhotonModel model, const ShadePoint& p, const Color& Cs, ModelLobe (&to)[kModelLobes]) {
     static const LobeKind *const diffuse = findLobe("diffuse"), *const mirror = findLobe("uniform"),
                                  *const specular = findLobe("specular");
+    const Vec3 in = normalize(p.I), side = normalize(p.N), N = dot(side, in) > 0 ? -side : side;
+    const Vec3 mirrored = normalize(in - N * (2 * dot(in, N)));
+    int count = 0;
+    if (model == PhotonModel::Matte) to[count++] = {diffuse, N, Cs, &kDiffuseKind};
+    if (model == PhotonModel::Chrome) to[count++] = {mirror, mirrored, Cs, &kSpecularKind};
+    if (model == PhotonModel::Plastic) { // as in the shader of that name
+        to[count++] = {diffuse, N, Cs * .5f, &kDiffuseKind};
+        to[count++] = {specular, N, Color(.5f), &kSpecularKind, kSpecularExponent / .1f};
+    }
+    if (model == PhotonModel::Glass || model == PhotonModel::Water) {
+        const float eta = model == PhotonModel::Glass ? 1.5f : 1.33f;
+        Vec3 refracted = in;
+        const float kr = reflectance(-dot(in, N), dot(side, in) < 0 ? 1 / eta : eta, in, N, refracted);
+        to[count++] = {mirror, mirrored, Cs * kr, &kSpecularKind};
+        if (kr < 1) to[count++] = {mirror, refracted, Cs * (1 - kr), &kSpecularKind};
+    }
+    return count;
+}
+
+void PhotonStage::takeModels(BatchContext& c, bool all) {
+    std::erase_if(requests_.lobes, [&](const LobeVertex& l) { return modelAt(c, size_t(l.point), all) != PhotonModel::Shader; });
     for (size_t i = 0; i < c.points.size(); ++i) {
-        const PhotonModel model = modelAt(i);
-        if (model == PhotonModel::Shader || model == PhotonModel::Transparent) continue;
-        const ShadePoint& p = c.points[i];
-        const Vec3 in = normalize(p.I), side = normalize(p.N), N = dot(side, in) > 0 ? -side : side;
-        const Color Cs = world_.bindings_[size_t(c.bindings[i])].attributes->color;
-        uint32_t site = kModelSite;
-        const auto add = [&](const LobeKind& kind, const Vec3& axis, const Color& weight, const RayKind& rays, float a = 0) {
+        const PhotonModel model = modelAt(c, i, all);
+        if (model == PhotonModel::Shader) continue;
+        ModelLobe lobes[kModelLobes];
+        const int count = lobesOfModel(model, c.points[i], world_.bindings_[size_t(c.bindings[i])].attributes->color, lobes);
+        for (int k = 0; k < count; ++k) {
+            const ModelLobe& m = lobes[k];
             LobeVertex& l = requests_.lobes.emplace_back();
             LobeParams params;
-            params.axis = axis;
-            params.wo = -in;
-            params.a = a;
+            params.axis = m.axis;
+            params.wo = -normalize(c.points[i].I);
+            params.a = m.a;
             l.point = int(i);
-            l.kind = &kind;
-            l.weight = weight;
+            l.kind = m.kind;
+            l.weight = m.weight;
             l.target = c.targets[i];
-            l.rays = &rays;
+            l.rays = m.rays;
             l.lights = l.deltaLights = false;
-            l.site = site++;
-            l.place = requests_.rows.add(kind, params);
-        };
-        const Vec3 mirrored = normalize(in - N * (2 * dot(in, N)));
-        if (model == PhotonModel::Matte) add(*diffuse, N, Cs, kDiffuseKind);
-        if (model == PhotonModel::Chrome) add(*mirror, mirrored, Cs, kSpecularKind);
-        if (model == PhotonModel::Plastic) { // as in the shader of that name
-            add(*diffuse, N, Cs * .5f, kDiffuseKind);
-            add(*specular, N, Color(.5f), kSpecularKind, kSpecularExponent / .1f);
-        }
-        if (model == PhotonModel::Glass || model == PhotonModel::Water) {
-            const float eta = model == PhotonModel::Glass ? 1.5f : 1.33f;
-            Vec3 refracted = in;
-            const float kr = reflectance(-dot(in, N), dot(side, in) < 0 ? 1 / eta : eta, in, N, refracted);
-            add(*mirror, mirrored, Cs * kr, kSpecularKind);
-            if (kr < 1) add(*mirror, refracted, Cs * (1 - kr), kSpecularKind);
+            l.site = kModelSite + uint32_t(k);
+            l.place = requests_.rows.add(*m.kind, params);
         }
     }
 }
@@ -122,7 +127,6 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
                  "Attribute \"photon\" \"string shadingmodel\" selects another model",
                  {}});
     }
-    takeModels(c, true);
     c.clear.assign(n, Color(0));
     c.passes.assign(n, 1.f);
     for (size_t i = 0; i < n; ++i) {
@@ -133,7 +137,10 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
                          : Color(std::clamp(1 - o.x, 0.f, 1.f), std::clamp(1 - o.y, 0.f, 1.f), std::clamp(1 - o.z, 0.f, 1.f));
         c.clear[i] = c.clear[i] * transparency_.leftBehind(c, int(i));
     }
-    vertexLight_.gather(c, sched);
+    if (!blocks_.runModels(c, sched)) {
+        takeModels(c, true);
+        vertexLight_.gather(c, sched);
+    }
     for (size_t i = 0; i < n; ++i)
         if (const Color clear = transparency_.goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
             transparency_.continueBehind(world_.bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear,

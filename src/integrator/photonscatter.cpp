@@ -1,10 +1,4 @@
 // Photons at vertices: stored at lobes that are not deltas, continued along a lobe; and density estimation for paths.
-//
-// A photon continues along a lobe with the power that makes transport adjoint: light must be the same along a path in both
-// directions. Let K be the radiance that the lobe scatters from one direction into the other; the photon's power is K times the
-// cosine of the outgoing over that of the incoming direction, both with the geometric normal, over the sampling density (Veach,
-// "Robust Monte Carlo Methods for Light Transport Simulation" (1997), 5.3). Refraction in shaders conserves radiance without the
-// factor for the change of solid angle; the adjoint has its inverse.
 #include "integrator/photonscatter.h"
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
@@ -28,36 +22,6 @@ PhotonScatter::PhotonScatter(const StageSet& s, const VertexLobes& v, LobeSelect
     : VertexStage(s, v), selection_(selection), scatter_(scatter), accumulator_(s.accumulator), batches_(s.batches),
       guide_(s.guide), intersector_(s.intersector), inputs_(s.inputs), paths_(s.paths), photons_(s.photons), shadows_(s.shadows),
       transparency_(s.transparency) {}
-
-namespace {
-float least(float x) { return std::max(std::fabs(x), 1e-4f); }
-} // namespace
-
-float photonFactor(const BsdfBatch& rows, BsdfBatch::Place place, const LobeKind& kind, bool delta, const Vec3& from,
-                   const Vec3& to, const Vec3& n, const Vec3& N) {
-    const float here = least(dot(from, n)), there = least(dot(to, n)), ways = there / here;
-    const bool through = (dot(from, n) > 0) != (dot(to, n) > 0);
-    if (delta) {
-        if (!through) return ways;
-        // Refraction about the shading normal, if it lies in one plane with the two directions.
-        const Vec3 across = cross(from, to);
-        const float si = sine(from, N), so = sine(to, N);
-        if (!(si > 1e-5f) || std::fabs(dot(across, N)) > 1e-3f * length(across) + 1e-6f) return ways;
-        const float index = so / si;
-        return index * index * (least(dot(from, N)) / least(dot(to, N))) * ways;
-    }
-    const bool ofHorizon = kind.has(kCosineOfHorizon) && rows.row(place, kRowHasHorizon) != 0;
-    if (ofHorizon || kind.has(kCosineOfAxis)) {
-        const Vec3 axis = rows.triple(place, ofHorizon ? kRowHorizon : kRowAxis);
-        float index = 1;
-        if (through && kind.has(kRefracts)) {
-            const float eta = std::max(rows.row(place, kRowEta), 1e-3f);
-            index = dot(axis, from) < 0 ? eta : 1 / eta; // index on the side it came from over the other
-        }
-        return index * index * least(dot(from, axis)) / least(dot(to, axis)) * ways;
-    }
-    return ways;
-}
 
 /// Whether a lobe receives light from all directions of its point, so that photons can be gathered for it. Surfaces only.
 bool PhotonScatter::spreads(const LobeVertex& l) const { return !l.delta && !l.narrow && !c_->between && seesAll(l); }
@@ -148,9 +112,9 @@ float PhotonScatter::photonWay(const LobeVertex& l, Vec3& w) const {
     const ShadePoint& p = c_->points[size_t(l.point)];
     const PathRay& from = rayOf(l);
     const Vec3 n = p.surface.displaced ? p.surface.displacedN : p.surface.n, N = normalize(p.N);
-    if (l.narrow) return least(dot(w, n)) / least(dot(from.dir, n));
+    if (l.narrow) return safeCosine(dot(w, n)) / safeCosine(dot(from.dir, n));
     const Vec3 in = normalize(p.I), tilt = in - from.dir;
-    const float factor = photonFactor(requests_.rows, l.place, *l.kind, l.delta, -in, w, n, N);
+    const float factor = photonFactor(requests_.rows.rowsAt(l.place), *l.kind, l.delta, -in, w, n, N);
     if (l.delta && length(tilt) > kLeastTilt / 4) {
         const Vec3 aside = tilt - N * dot(tilt, N);
         const float si = sine(in, N), index = si > 0 ? sine(w, N) / si : 1;
@@ -295,7 +259,7 @@ void PhotonScatter::takePhotons(Sched& sched) {
         grid->within(at, time, [&](const photonmap::Photon& photon) {
             if (!(std::fabs(dot(photonmap::unpackUnit(photon.normal), n)) > 0.7f)) return;
             const Vec3 w = photon.direction();
-            near_.push_back({w, photon.power * (perArea / least(dot(w, n)))});
+            near_.push_back({w, photon.power * (perArea / safeCosine(dot(w, n)))});
         });
         if (near_.empty()) continue;
         for (int i : lobesOf(point)) {

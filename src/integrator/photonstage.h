@@ -7,6 +7,7 @@
 namespace alpenglow::integrator {
 
 class Accumulator;
+class BlockVertices;
 class LightPathStates;
 class MediaStacks;
 class RayStore;
@@ -15,6 +16,17 @@ struct StageSet;
 class SurfaceShading;
 class Transparency;
 class VertexLight;
+
+/// A lobe of a photon shading model; current space.
+struct ModelLobe {
+    const LobeKind* kind = nullptr;
+    Vec3 axis; ///< unit
+    Color weight;
+    const RayKind* rays = nullptr;
+    float a = 0; ///< LobeParams::a
+};
+inline constexpr int kModelLobes = 2;           ///< most lobes of a model
+inline constexpr uint32_t kModelSite = 0xfff00; ///< number of the first; larger than any call site of a shader
 
 class PhotonStage final : Stage {
 public:
@@ -39,6 +51,10 @@ public:
     void takeGlobalMaps(BatchContext&, Sched&);
     /// Photons at surfaces with a photon shading model, or whose kernel waits for rays.
     void photonsByModel(BatchContext&, Sched&);
+    /// The photon shading model of a point. all: surfaces without one have a matte one.
+    PhotonModel modelAt(const BatchContext&, size_t point, bool all) const;
+    /// The lobes of a model at a point; returns their number.
+    static int lobesOfModel(PhotonModel, const ShadePoint&, const Color& Cs, ModelLobe (&to)[kModelLobes]);
     /// Replaces the lobes that the kernel requested by those of the photon shading models; `all`: for every point.
     void takeModels(BatchContext&, bool all);
 
@@ -47,6 +63,7 @@ private:
     std::unordered_map<int, const photonmap::PhotonMap*> globalMaps_; ///< by binding
     std::unique_ptr<PhotonTrace> photonTrace_;
     Accumulator& accumulator_;
+    BlockVertices& blocks_;
     const LightPathStates& paths_;
     MediaStacks& media_;
     RayStore& store_;

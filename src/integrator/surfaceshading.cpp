@@ -162,7 +162,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
         atmosphere_.scaleRequests(*c);
     }
     if (aside.empty() && blocks_.takes(*c)) {
-        c->opaque = isOpaque(*c->batch);
+        c->opaque = !photons_.photonTrace() && isOpaque(*c->batch); // those see the opacity of their shading models
         if (!c->opaque && rules_.pickOne) transparency_.tellClear(*c);
         if (blocks_.run(*c, sched)) {
             counters_.inBlocks += uint64_t(n);
@@ -174,7 +174,6 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     }
     std::vector<AskedLobe> asked; // only if outputs share lobes
     requests_.requestPairs(*c, aside.empty() ? nullptr : &asked, sched);
-    if (photons_.photonTrace()) photons_.takeModels(*c, false);
     if (world_.settings_.hider == Hider::Path) transparency_.tellClear(*c);
     const auto rest = lightOutputs_.shareLight(*c, asked, aside, sched);
     vertexLight_.gather(*c, sched);

@@ -2,6 +2,7 @@
 #include "integrator/ambientlight.h"
 #include "integrator/blockvertices.h"
 #include "integrator/context.h"
+#include "integrator/photonstage.h"
 #include "integrator/requests.h"
 #include "integrator/stageset.h"
 #include "integrator/subsurfacewalks.h"
@@ -17,6 +18,7 @@ VertexLight::VertexLight(const StageSet& s)
 void VertexLight::gather(BatchContext& c, Sched& sched) {
     if (!ambient_.asked.empty()) ambient_.gather(c);
     if (blocks_.runRequests(c, sched)) return;
+    if (set_.photons.photonTrace()) set_.photons.takeModels(c, false);
     std::unique_ptr<VertexSampling> g = std::move(gather_); // moved out, so that a nested call makes its own
     if (!g) g = std::make_unique<VertexSampling>(set_);
     g->run(c, sched);

@@ -20,6 +20,7 @@ struct alignas(64) VertexBlock {
     Row I[3];        ///< incident vector, of any length
     Row weight[3];   ///< throughput of the incoming ray
     Row clear[3];    ///< transparency, 0 to 1; valid if `through` is set
+    Row beyond[3];   ///< what goes on behind the point: `clear`, except for photons at surfaces that are invisible from behind
     Row energyScale; ///< by select(): factor of indirect light for lighting shadeops (energy rule); 1 if reflectance is at most 1
     Row passes;      ///< by select() and pick(): probability of continuing behind the point; 1: in addition to lobes
     int32_t bounces[kBlock];
@@ -46,7 +47,8 @@ struct alignas(64) LobeBlock {
     Lanes failed = 0;    ///< by select(): points whose probability is not finite; no ray is sent
     Lanes narrow = 0;    ///< points where photons treat the lobe as a mirror, though it is no delta
     Lanes left = 0;      ///< of these: points where it leaves the lights that send photons to them
-    void forget() { asked = lights = elsewhere = stays = ended = failed = narrow = left = 0; }
+    Lanes boundless = 0; ///< points where only the depth limit of the picture ends its ray
+    void forget() { asked = lights = elsewhere = stays = ended = failed = narrow = left = boundless = 0; }
 };
 
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.

@@ -91,23 +91,24 @@ AL_INLINE vf worthOf(const V3& share, const V3& left, vm competes) {
 }
 
 /// Points where a depth limit ends the rays of a site.
-AL_INLINE Lanes deepOf(const VertexBlock& v, const SelectRules& rules, int site) {
-    return rules.sites[site].endless ? 0 : v.deep[rules.sites[site].diffuse];
+AL_INLINE Lanes deepOf(const VertexBlock& v, const LobeBlock& l, const SelectRules& rules, int site) {
+    return rules.sites[site].endless ? 0 : v.deep[rules.sites[site].diffuse] & (v.last | ~l.boundless);
 }
 
 AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules, int at,
                            Selected& found) {
-    V3 sum{vf(0), vf(0), vf(0)}, clear = sum;
+    V3 sum{vf(0), vf(0), vf(0)}, clear = sum, beyond = sum;
     vm competes(0);
     const V3 left = absolute(load3(v.weight, at));
     if (v.through) {
         clear = load3(v.clear, at);
-        competes = (loadInt(v.bounces + at) > 0) & (maxComponent(clear) > 0);
+        beyond = load3(v.beyond, at);
+        competes = (loadInt(v.bounces + at) > 0) & (maxComponent(beyond) > 0);
     }
     vi lobes(0);
     for (int s = 0; s < count; ++s) {
         LobeBlock& l = *sites[s];
-        const Lanes deep = deepOf(v, rules, s);
+        const Lanes deep = deepOf(v, l, rules, s);
         const vm mask = maskFrom(l.asked, at);
         const V3 weight = absolute(load3(l.weight, at));
         const vf albedo = load(l.lobe[kRowAlbedo] + at), worth = worthOf(weight, left, competes) * albedo;
@@ -126,7 +127,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
     const vm more = maxComponent(sum) > 1;
     found.bright |= bitsFrom((scale < vf(.999f)) & more, at) & v.points;
     found.brightWithClear |= bitsFrom((scale < vf(.999f)) & ~more, at) & v.points;
-    const vf behind = v.through ? select(competes, worthOf(clear, left, competes), vf(0)) : vf(0);
+    const vf behind = v.through ? select(competes, worthOf(beyond, left, competes), vf(0)) : vf(0);
     vd total = __builtin_convertvector(behind, vd);
     for (int s = 0; s < count; ++s) {
         LobeBlock& l = *sites[s];
@@ -149,7 +150,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
             share = select(alone, share, select(none, vf(0), select(whole, vf(1), __builtin_convertvector(c / total, vf))));
         }
         if (rules.all) share = select(chosen > 0, vf(1), vf(0));
-        if (v.waits) share = select(maskFrom(l.asked & ~(deepOf(v, rules, s) | l.stays | v.guided), at), vf(1), vf(0));
+        if (v.waits) share = select(maskFrom(l.asked & ~(deepOf(v, l, rules, s) | l.stays | v.guided), at), vf(1), vf(0));
         store(l.chosen + at, share);
     }
     const vd passes = __builtin_convertvector(behind, vd) / total;

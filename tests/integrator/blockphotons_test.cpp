@@ -3,6 +3,8 @@
 #include "photonmap/photongrid.h"
 #include "scene/lightpaths.h"
 #include "world/photonmaps.h"
+#include <algorithm>
+#include <cstring>
 
 namespace blockphotons_test {
 
@@ -183,6 +185,132 @@ TEST(BlockPhotons, OfMapsAreGathered) {
         EXPECT_GT(all.inBlocks, all.points / 3) << int(h);
         EXPECT_EQ(differences(one, all), 0u) << int(h);
         EXPECT_GT(differences(one, traced(single, false)), 20u) << int(h) << ": no photons";
+    }
+}
+
+namespace {
+
+struct Flown {
+    std::vector<StoredPhoton> photons;
+    uint64_t inBlocks, points;
+    long messages; ///< lines
+};
+Flown flown(const std::string& rib, const Settings& settings, const PhotonUse& use) {
+    constexpr uint32_t kPhotons = 2000;
+    Scene s(rib, settings);
+    PhotonEmission emission(s.world, use, s.diagnostics);
+    PhotonEmission::Thread thread(emission, s.diagnostics);
+    Flown f;
+    EXPECT_TRUE(thread.emit(3, 0, kPhotons, kPhotons, f.photons, nullptr));
+    f.inBlocks = thread.counters().inBlocks;
+    f.points = thread.counters().points;
+    const std::string said = s.messages();
+    f.messages = std::count(said.begin(), said.end(), '\n');
+    return f;
+}
+size_t differences(const Flown& a, const Flown& b) {
+    size_t n = std::max(a.photons.size(), b.photons.size()) - std::min(a.photons.size(), b.photons.size());
+    for (size_t i = 0; i < std::min(a.photons.size(), b.photons.size()); ++i) {
+        const StoredPhoton &p = a.photons[i], &q = b.photons[i];
+        n += std::memcmp(&p.photon, &q.photon, sizeof p.photon) != 0 || p.number != q.number || p.binding != q.binding ||
+             !(p.way == q.way) || p.time != q.time || p.caustic != q.caustic;
+    }
+    return n;
+}
+/// Photons of a room in blocks and point by point. least: of all points, those in blocks.
+void expectSame(const std::string& rib, const std::string& what, const PhotonUse& use = {.sky = false}, double least = .9,
+                const Settings& settings = withShipped(true)) {
+    Settings single = settings, narrow = settings;
+    single.blocks = false;
+    narrow.lanes = (what.size() + rib.size()) % 2 ? 4 : 8;
+    const Flown one = flown(rib, single, use), all = flown(rib, settings, use);
+    EXPECT_EQ(one.inBlocks, 0u);
+    EXPECT_GE(double(all.inBlocks), least * double(all.points)) << what;
+    EXPECT_GT(one.photons.size(), 10u) << what;
+    EXPECT_EQ(differences(one, all), 0u) << what;
+    EXPECT_EQ(one.messages, all.messages) << what;
+    if (chosen(what.size(), 3)) EXPECT_EQ(differences(one, flown(rib, narrow, use)), 0u) << what << ", narrow kernels";
+}
+constexpr PhotonUse kCaustics{.all = true, .sky = false, .caustics = true, .width = .1f};
+
+} // namespace
+
+TEST(BlockPhotons, FlyAsShadersSay) {
+    writeNarrow();
+    writeGlossy();
+    writeFacets();
+    writeShader("around", R"(surface around() {
+    normal n = faceforward(normalize(N), I);
+    float i;
+    Oi = Os;
+    for (i = 0; i < 3; i += 1) Ci += .1 * diffuse(n) + .1 * specular(n, -normalize(I), .01 + .01 * i);
+})");
+    writeShader("waxen", "surface waxen() { Oi = 1; Ci = .3 * diffuse(faceforward(normalize(N), I)) + .5 * subsurface(P, N, "
+                         "\"reflectance\", color(.8, .6, .4), \"meanfreepath\", .1, \"ior\", 1.3); }\n");
+    writeShader("bumpy", R"(displacement bumpy() { P += .03 * sin(20 * u) * normalize(N); N = calculatenormal(P); })");
+    writeShader("beer", "volume beer(float k = .1) { Ci *= exp(-k * length(I)); }\n");
+    writeShader("apart", "surface apart() { normal n = faceforward(normalize(N), I); Oi = Os; Ci = .5 * diffuse(n) + .5 * "
+                         "indirectdiffuse(P, n, 2) + .1 * trace(P, reflect(normalize(I), n), \"weight\", 0); }\n");
+    struct Case {
+        std::string shader, more;
+    };
+    const std::string clear = "Opacity .5 .6 .7\n", bumpy = "ShadingRate 16\nAttribute \"displacementbound\" \"float sphere\" "
+                                                            ".1\nDisplacement \"bumpy\"\n";
+    for (const Case& c :
+         {Case{"matte", ""}, Case{"plastic", clear}, Case{"glossy", ""}, Case{"facets", clear + "Sides 1\n"},
+          Case{"roughmetal", clear}, Case{"grazing", ""}, Case{"polished", "Sides 1\n"}, Case{"coated", ""},
+          Case{"coated", bumpy}, Case{"roughglass", ""}, Case{"twocalls", ""}, Case{"around", clear}, Case{"waxen", ""},
+          Case{"matte", "Atmosphere \"beer\"\n"}, Case{"apart", ""},
+          Case{"coated", "Attribute \"trace\" \"int maxspeculardepth\" 1\n"},
+          Case{"polished", "Attribute \"trace\" \"int maxdiffusedepth\" 1 \"int maxspeculardepth\" 2 \"float bias\" .01\n"}}) {
+        const std::string rib = roomOf("\"" + c.shader + "\"", kMirrors + c.more), what = c.shader + " " + c.more;
+        expectSame(rib, what);
+        expectSame(rib, what + "caustics", kCaustics);
+    }
+}
+
+TEST(BlockPhotons, FlyAsModelsSay) {
+    writeShader("photonwaits", "surface photonwaits() { color c = trace(P, reflect(normalize(I), normalize(N))); Oi = Os; Ci = "
+                               "comp(c, 0) > .1 ? .5 : .25; }\n");
+    std::string balls; // of all models
+    int i = 0;
+    for (const char* model : {"matte", "plastic", "chrome", "glass", "water", "transparent"})
+        for (const char* shader : {"plastic", "photonwaits"})
+            balls += "AttributeBegin\nAttribute \"photon\" \"string shadingmodel\" \"" + std::string(model) + "\"\nSurface \"" +
+                     shader + "\"\nOpacity .7 .6 .5\nColor .8 .7 .6\nTranslate " + std::to_string(.4 * (i % 4) - .6) + " " +
+                     std::to_string(.4 * (i / 4) - .4) + " 3.5\nSphere .15 -.15 .15 360\nAttributeEnd\n",
+                ++i;
+    for (const char* shader : {"matte", "photonwaits"}) {
+        const std::string rib = roomOf("\"" + std::string(shader) + "\"", kMirrors + balls);
+        expectSame(rib, shader, {.sky = false}, .9);
+        expectSame(rib, shader, kCaustics, 0);
+        expectSame(rib, shader, {.sky = false, .learns = true}, 0);
+    }
+}
+
+TEST(BlockPhotons, FlyThroughMediaAndMotion) {
+    writeNarrow();
+    const std::string fog = "AttributeBegin\nSurface \"null\"\nInterior \"medium\" \"color scattering\" [.3 .2 .1] \"color "
+                            "absorption\" [.05 .02 .1]\nTranslate 0 0 5\nSphere 1.9 -1.9 1.9 360\nAttributeEnd\n";
+    const std::string moving = "MotionBegin [0 1]\nTranslate 0 0 0\nTranslate .2 0 0\nMotionEnd\n";
+    Settings direct = withShipped(true), local = direct, shallow = direct, unbiased = direct;
+    direct.indirect = false;
+    local.localRoulette = true;
+    shallow.maxDepth = 2;
+    unbiased.unbiased = true;
+    struct Case {
+        const char* what;
+        std::string rib;
+        Settings settings;
+    };
+    const std::string coated = roomOf("\"coated\"", kMirrors);
+    for (const Case& c : {Case{"fog", roomOf("\"matte\"", fog + kMirrors), withShipped(true)},
+                          Case{"fog about highlights", roomOf("\"coated\"", fog + kMirrors), withShipped(true)},
+                          Case{"motion", "Shutter 0 1\n" + roomOf("\"coated\"", moving + kMirrors), withShipped(true)},
+                          Case{"direct", coated, direct}, Case{"local", coated, local}, Case{"shallow", coated, shallow},
+                          Case{"unbiased", coated, unbiased}}) {
+        expectSame(c.rib, c.what, {.sky = false}, .8, c.settings);
+        expectSame(c.rib, std::string(c.what) + ", caustics", kCaustics, .8, c.settings);
     }
 }
 

@@ -118,21 +118,23 @@ struct Chances {
 Chances chancesOf(const VertexBlock& v, const std::vector<LobeBlock>& lobes, int i) {
     Chances c;
     const Color clear = v.through ? at(v.clear, i) : Color(0), left = absolute(at(v.weight, i));
-    const bool competes = v.bounces[i] > 0 && maxComponent(clear) > 0;
+    const Color beyond = v.through ? at(v.beyond, i) : Color(0); // another one for photons
+    const bool competes = v.bounces[i] > 0 && maxComponent(beyond) > 0;
     const auto worth = [&](const Color& share) { return competes ? dot(share, left) / 3 : luminance(share); };
     Color sum(0);
     int asked = 0;
     for (size_t k = 0; k < lobes.size(); ++k) {
         const bool asks = lobes[k].asked >> i & 1;
         const Color w = absolute(at(lobes[k].weight, i));
-        c.chosen.push_back(asks && !(v.deep[k == 1] >> i & 1) ? worth(w) * lobes[k].lobe[kRowAlbedo][i] : 0);
-        c.ended.push_back(asks && (v.deep[k == 1] >> i & 1) && worth(w) * lobes[k].lobe[kRowAlbedo][i] > 0);
+        const bool deep = (v.deep[k == 1] & (v.last | ~lobes[k].boundless)) >> i & 1;
+        c.chosen.push_back(asks && !deep ? worth(w) * lobes[k].lobe[kRowAlbedo][i] : 0);
+        c.ended.push_back(asks && deep && worth(w) * lobes[k].lobe[kRowAlbedo][i] > 0);
         if (asks && k % 2 == 0) sum += w * lobes[k].lobe[kRowAlbedo][i];
         asked += asks;
     }
     for (int q = 0; q < 3; ++q)
         if (sum[q] + clear[q] > 1 && sum[q] > 0) c.scale = std::min(c.scale, (1 - clear[q]) / sum[q]);
-    const float behind = competes ? worth(clear) : 0;
+    const float behind = competes ? worth(beyond) : 0;
     double total = behind;
     for (size_t k = 0; k < lobes.size(); ++k) {
         if (behind > 0 && k % 2 == 0) c.chosen[k] *= std::max(c.scale, 1 / 32.f);
@@ -151,9 +153,15 @@ TEST(Stages, SelectsByWhatLobesGiveBack) {
         before.through = turn % 3 == 0;
         before.last = d.rarely() ? uint32_t(d.random()) & 0xffffu : 0;
         for (Lanes& deep : before.deep) deep = before.last | (d.rarely() ? uint32_t(d.random()) & 0xffffu : 0);
-        for (int i = 0; i < kBlock; ++i) put(before.clear, i, d.rarely() ? Color(0) : Color(d.one(), d.one(), d.one()));
+        for (int i = 0; i < kBlock; ++i) {
+            put(before.clear, i, d.rarely() ? Color(0) : Color(d.one(), d.one(), d.one()));
+            put(before.beyond, i, d.rarely() ? Color(1) : at(before.clear, i));
+        }
         std::vector<LobeBlock> lobes;
-        for (int k = 0; k < 1 + turn % 4; ++k) lobes.push_back(lobe(d, false));
+        for (int k = 0; k < 1 + turn % 4; ++k) {
+            lobes.push_back(lobe(d, false));
+            lobes.back().boundless = d.rarely() ? uint32_t(d.random()) & 0xffffu : 0;
+        }
         for (const Stages* s : widths()) {
             VertexBlock v = before;
             std::vector<LobeBlock> mine = lobes;

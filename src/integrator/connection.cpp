@@ -4,7 +4,6 @@
 #include "base/direction.h"
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
-#include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/lightsampling.h"
 #include "integrator/lobeselection.h"
@@ -18,9 +17,8 @@
 namespace alpenglow::integrator {
 
 Connection::Connection(const StageSet& s, const VertexLobes& v, LightSampling& lightSampling)
-    : VertexStage(s, v), lightSampling_(lightSampling), accumulator_(s.accumulator), intersector_(s.intersector),
-      lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces), media_(s.media), mediumEvents_(s.mediumEvents),
-      shadows_(s.shadows) {}
+    : VertexStage(s, v), lightSampling_(lightSampling), accumulator_(s.accumulator), paths_(s.paths), media_(s.media),
+      mediumEvents_(s.mediumEvents), shadows_(s.shadows) {}
 
 void Connection::connect() {
     reached_.clear();

@@ -7,11 +7,8 @@
 namespace alpenglow::integrator {
 
 class Accumulator;
-class Intersector;
-class LightKernels;
 class LightPathStates;
 class LightSampling;
-class LitSurfaces;
 class MediaStacks;
 class MediumEvents;
 class ShadowRays;
@@ -20,8 +17,6 @@ class Connection final : VertexStage {
 public:
     Connection(const StageSet&, const VertexLobes&, LightSampling&);
     void connect();
-    /// The light that a trace() with sums would see in direction w without occlusion (unshadowed.cpp).
-    void unshadowed(const LobeVertex&, const Vec3& w, const Color& through, const Color& environment, TraceSums&);
 
 private:
     /// A lobe and a light sample that reaches it from direction w. `turn`: how many samples have reached the lobe before.
@@ -40,10 +35,7 @@ private:
     int lastQuery_ = -1;     ///< query of the last shadow ray, which other lobes of its point may share
     LightSampling& lightSampling_;
     Accumulator& accumulator_;
-    Intersector& intersector_;
-    LightKernels& lightKernels_;
     const LightPathStates& paths_;
-    LitSurfaces& litSurfaces_;
     MediaStacks& media_;
     MediumEvents& mediumEvents_;
     ShadowRays& shadows_;

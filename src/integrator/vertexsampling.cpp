@@ -9,8 +9,8 @@ namespace alpenglow::integrator {
 VertexSampling::VertexSampling(const StageSet& s)
     : VertexStage(s, *this), selection_(s, *this, photonScatter_), lightSampling_(s, *this, connection_, photonScatter_),
       connection_(s, *this, lightSampling_), guideScatter_(s, *this, selection_), photonScatter_(s, *this, selection_, scatter_),
-      scatter_(s, *this, selection_, connection_, photonScatter_), lastSkies_(s.lastSkies), litSurfaces_(s.litSurfaces),
-      paths_(s.paths), photons_(s.photons) {}
+      scatter_(s, *this, selection_, photonScatter_), lastSkies_(s.lastSkies), litSurfaces_(s.litSurfaces), paths_(s.paths),
+      photons_(s.photons) {}
 
 void VertexSampling::run(BatchContext& c, Sched& sched) {
     if (requests_.lobes.empty()) return;

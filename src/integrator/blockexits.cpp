@@ -32,8 +32,7 @@ void BlockVertices::walkBelow(size_t b, BatchContext& c) {
 }
 
 bool BlockVertices::runExits(BatchContext& c, std::span<const float> indirect, Sched& sched) {
-    const bool plain = usable_ && rules_.pickOne && plain_[size_t(c.binding->lightList)];
-    if (!plain || photons_.photonTrace() || !takesRays(c)) return false;
+    if (!usable_ || photons_.photonTrace() || !takesRays(c)) return false;
     if (!std::all_of(indirect.begin(), indirect.end(), [](float x) { return x > 0; })) return false; // guide rays need light
     begin(c, false);
     if (!loadVertices(c)) return false;

@@ -11,40 +11,25 @@
 #include "integrator/surfacepoints.h"
 #include "integrator/vertexlight.h"
 #include "world/blocksite.h"
-#include "world/emitterfootprint.h"
 #include <algorithm>
 #include <bit>
 
 namespace alpenglow::integrator {
 
-namespace {
-Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
-
-/// Whether blocks support a light: one that queries no surface and has no further outputs. chosen: it is one of many, of which
-/// each point samples a few.
-bool isPlainLight(const BoundLight& l, bool chosen) {
-    return !l.asksSurface && !l.channels && l.sentCl < 0 && !(chosen && isWide(l));
-}
-} // namespace
+static Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
 
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lastSkies_(s.lastSkies),
-      lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), occlusion_(s.occlusion),
-      photons_(s.photons), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces),
-      vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+      lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents),
+      occlusion_(s.occlusion), photons_(s.photons), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface),
+      surfaces_(s.surfaces), vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
-    const bool rules = rules_.lightsAtRequests && !set.lightOnly && set.indirect;
-    const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights && !world_.traceSubsets_ && !world_.globalMaps_;
+    endsTrees_ = !set.localRoulette && world_.lightTraces_ > 0;
+    usable_ = set.blocks && !world_.traceSubsets_ && !world_.globalMaps_;
     usable_ &= world_.accel_ != nullptr; // requires a complete world
     guided_ = std::make_unique<Guided>(*this, s.guide);
     if (!usable_) return;
-    for (const WorldImpl::LightList& list : world_.lightLists_)
-        plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
-            const BoundLight& light = world_.lights_[size_t(l)];
-            return isPlainLight(light, !list.chooser.empty()) && !(light.hazy && !world_.media_.empty());
-        }));
     for (const BoundLight& l : world_.lights_) inRows_.push_back(inRows(l, l.kernel));
     chosen_ = std::make_unique<ChosenLights>(*this);
 }
@@ -58,7 +43,7 @@ bool BlockVertices::takesRays(const BatchContext& c) const {
 }
 
 bool BlockVertices::takes(const BatchContext& c) const {
-    if (!usable_ || !plain_[size_t(c.binding->lightList)] || !asksBlocks(c)) return false;
+    if (!usable_ || !asksBlocks(c)) return false;
     return !c.aside && !c.between && !c.below && !photons_.photonTrace() && takesRays(c);
 }
 
@@ -77,9 +62,7 @@ bool BlockVertices::asksBlocks(const BatchContext& c) {
     });
 }
 
-bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
-    return usable_ && rules_.pickOne && kernel.blocks && plain_[size_t(b.lightList)];
-}
+bool BlockVertices::takes(const BoundKernel& kernel) const { return usable_ && rules_.pickOne && kernel.blocks; }
 
 bool BlockVertices::run(BatchContext& c, Sched& sched) { return c.emits.empty() || follow(c, sched, false); }
 
@@ -93,6 +76,11 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
     indirect_ = {};
     apart_.clear();
     loops_.clear();
+    told_.clear();
+    given_.clear();
+    onlySite_ = -1;
+    draw_ = 0;
+    several_ = checksHits_ = false;
     ignored_ = 0;
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
@@ -102,13 +90,14 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
 
 bool BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
+    if (world_.lightsAsk()) tellLights(c);
     if (!select(c)) return false;
     counters_.ignored += ignored_;
     if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
     if (world_.settings_.firstSeen && !waits_ && !c.between) showAlbedo(c);
     lightDirections(c);
-    light(c);
-    if (lastSkies_.any()) lastSkies(c);
+    light(c, sched);
+    if (rules_.emissionCounts && lastSkies_.any()) lastSkies(c);
     guided_->run(c, sched);
     scatter(c, sched);
     if (!subsurface_.below.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
@@ -238,7 +227,9 @@ bool BlockVertices::findSites(const BatchContext& c) {
 }
 
 /// Whether arguments of a call are read point by point.
-static bool readsRows(const BlockLobes& s) { return s.walks || s.info->kind == SiteKind::Trace; }
+static bool readsRows(const BlockLobes& s) {
+    return s.walks || s.info->kind == SiteKind::Trace || !s.info->outputs.empty(); // outputs: lights query them
+}
 
 void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.number = number;
@@ -351,11 +342,15 @@ void BlockVertices::prepare() {
 }
 
 bool BlockVertices::select(const BatchContext& c) {
-    SelectRules rules{0, world_.settings_.unbiased, 0, !rules_.pickOne, 0};
+    SelectRules rules;
+    rules.unbiased = world_.settings_.unbiased;
+    rules.all = !rules_.pickOne;
     for (size_t k = 0; k < count_; ++k) {
         rules.lighting |= uint32_t(sites_[k].lighting) << k;
         rules.diffuse |= uint32_t(sites_[k].diffuse) << k;
         rules.endless |= uint32_t(sites_[k].walks) << k;
+        const bool still = (!world_.settings_.indirect && sites_[k].diffuse) || (c.below && !rules_.pickOne);
+        rules.still |= uint32_t(still && !sites_[k].walks) << k;
     }
     std::vector<Selected> found(blocks_);
     for (size_t b = 0; b < blocks_; ++b) {

@@ -76,6 +76,7 @@ struct alignas(64) LightBlock {
     Lanes metDiffuse = 0, metSpecular = 0; ///< points whose rays of these kinds could hit the light
     bool emitter = false;                  ///< `end` is set
     bool met = false;                      ///< rays can hit it: multiple importance sampling applies
+    const float* draws = nullptr;          ///< a row, samples of the light that the lobe takes; null: one
     bool parted = false;                   ///< `part` is set
     Row part;                              ///< MIS weight of samples of this kind
 };
@@ -143,6 +144,7 @@ struct SelectRules {
     uint32_t diffuse = 0;  ///< bit i: rays of site i are diffuse
     bool all = false;      ///< each lobe is followed, with probability 1, instead of one of them
     uint32_t endless = 0;  ///< bit i: depth limits do not end the rays of site i
+    uint32_t still = 0;    ///< bit i: site i samples lights only and sends no rays
 };
 /// Further results of select(): points whose reflectance exceeds 1, alone or with transparency; points with probabilities that
 /// are not finite.

@@ -115,9 +115,10 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
         found.failed |= bitsFrom(mask & ~finite(worth), at);
         const vm guided = maskFrom(v.guided, at) & (load(l.lobe[kRowDelta] + at) == 0);
         const vm follows = mask & ~(worth < 0);
+        const Lanes sends = rules.still >> s & 1 ? 0 : ~0u;
         found.cut |= bitsFrom(follows & (worth > 0), at) & v.last;
-        l.ended |= bitsFrom(follows & (worth > 0) & ~guided, at) & deep;
-        store(l.chosen + at, select(follows & ~maskFrom(deep, at) & ~guided, worth, vf(0)));
+        l.ended |= bitsFrom(follows & (worth > 0) & ~guided, at) & deep & sends;
+        store(l.chosen + at, select(follows & maskFrom(sends & ~deep, at) & ~guided, worth, vf(0)));
         lobes -= mask;
     }
     const vf scale = energyScaleOf(sum, clear, rules);
@@ -148,7 +149,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
             share = select(alone, share, select(none, vf(0), select(whole, vf(1), __builtin_convertvector(c / total, vf))));
         }
         if (rules.all) share = select(chosen > 0, vf(1), vf(0));
-        if (v.waits) share = select(maskFrom(l.asked & ~deepOf(v, rules, s), at), vf(1), vf(0));
+        if (v.waits) share = select(maskFrom(rules.still >> s & 1 ? 0 : l.asked & ~deepOf(v, rules, s), at), vf(1), vf(0));
         store(l.chosen + at, share);
     }
     const vd passes = __builtin_convertvector(behind, vd) / total;

@@ -15,11 +15,7 @@ inline Settings pathSettings() {
     s.hider = Hider::Path;
     return s;
 }
-inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = pathSettings()) {
-    s.maxDepth = maxDepth;
-    s.blocks = blocks;
-    s.lanes = lanes;
-    Scene scene(rib, s);
+inline Traced trace(Scene& scene) {
     std::vector<CameraRay> rays;
     const int side = nightly() ? 30 : 20;
     for (int i = 0; i < side * side; ++i) {
@@ -35,6 +31,13 @@ inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int max
     t.points = integrator.counters().points;
     t.cut = integrator.counters().depthCap;
     return t;
+}
+inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = pathSettings()) {
+    s.maxDepth = maxDepth;
+    s.blocks = blocks;
+    s.lanes = lanes;
+    Scene scene(rib, s);
+    return trace(scene);
 }
 
 inline const char* const kLights =

@@ -33,8 +33,8 @@ void BlockVertices::walkBelow(size_t b, BatchContext& c) {
 }
 
 bool BlockVertices::runExits(BatchContext& c, std::span<const float> indirect, Sched& sched) {
-    const bool flies = flight_->on(), plain = !flies && usable_ && rules_.pickOne && plain_[size_t(c.binding->lightList)];
-    if (flies ? !flight_->fits(c) : !plain || !takesRays(c)) return false;
+    const bool flies = flight_->on();
+    if (flies ? !flight_->fits(c) : !usable_ || !takesRays(c)) return false;
     if (!flies && !std::all_of(indirect.begin(), indirect.end(), [](float x) { return x > 0; }))
         return false; // guide rays need light
     begin(c, false);

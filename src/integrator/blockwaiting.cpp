@@ -12,9 +12,8 @@ namespace alpenglow::integrator {
 
 /// Whether the strips of a batch all make the same first request, for one ray each, at nearly all points of the batch.
 bool BlockVertices::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
-    const SurfaceBinding& b = *c.binding;
-    if (!usable_ || world_.traceSubsets_ || !plain_[size_t(b.lightList)] || c.aside || c.between || c.below || !c.clear.empty() ||
-        c.points.empty() || photons_.photonTrace() || !takesRays(c))
+    if (!usable_ || world_.traceSubsets_ || c.aside || c.between || c.below || !c.clear.empty() || c.points.empty() ||
+        photons_.photonTrace() || !takesRays(c))
         return false;
     size_t asked = 0;
     for (const KernelStrip* s : strips) {

@@ -11,7 +11,7 @@ namespace alpenglow::integrator {
 
 namespace {
 constexpr float kMostLightDirected = 0.3f; ///< largest share of a lobe's samples
-constexpr float kHalfShare = 0.2f;         ///< optical distance to the light at which the share is half of that
+constexpr float kHalfwayThick = 0.2f;      ///< optical distance to the light at which the share is half of that
 } // namespace
 
 float LightDirected::density(const Vec3& w, float ofLobe) const {
@@ -49,7 +49,7 @@ LightDirected MediumEvents::atSurfaceInMedium(const KernelRun& c, size_t point) 
         const Vec3 to = lightDirection(m, ray, p.P, &away);
         if (!(dot(to, side) > 0)) continue;
         const float thick = away * mean(m.homogeneous->scattering); // small where little is scattered on the way
-        return {to, kMostLightDirected * thick / (thick + kHalfShare)};
+        return {to, kMostLightDirected * thick / (thick + kHalfwayThick)};
     }
     return {};
 }

@@ -54,19 +54,6 @@ template <class Row> bool pointsNowhere(const SiteInfo& s, const Row& f) {
     const int row = s.rows[1];
     return f(row) == 0 && f(row + 1) == 0 && f(row + 2) == 0;
 }
-
-/// Values of a point that lights may query.
-template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& s, int point, const Row& f) {
-    LitValues told;
-    told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray has none
-    told.displaced = c.displaced;
-    told.point = point;
-    for (const SiteInfo::Output& o : s.outputs) {
-        auto& of = told.outputs.emplace_back(&o, std::vector<float>());
-        for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
-    }
-    return told;
-}
 } // namespace
 
 /// Requests that shadow rays answer.
@@ -79,7 +66,7 @@ void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, con
         ambient_.asked.push_back({point, Vec3(f(s.rows[0]), f(s.rows[0] + 1), f(s.rows[0] + 2)), weight, target, owns});
         if (!world_.lightsAsk()) return;
         ambient_.asked.back().lit = int(litSurfaces_.values.size());
-        litSurfaces_.values.push_back(litValues(c, s, point, f));
+        litSurfaces_.values.push_back(litValuesOf(c, s, point, f));
         return;
     }
     if (s.kind == SiteKind::Transmission) {
@@ -209,7 +196,7 @@ void Requests::request(BatchContext& c, const SiteInfo& s, int point, const floa
     l.occurrence = occurrence;
     if (world_.lightsAsk()) {
         l.lit = int(litSurfaces_.values.size());
-        litSurfaces_.values.push_back(litValues(c, s, point, f));
+        litSurfaces_.values.push_back(litValuesOf(c, s, point, f));
     }
     if (s.kind == SiteKind::Subsurface) {
         subsurface_.request(c, s, p, f, l);

@@ -44,7 +44,7 @@ static bool needsNoPoints(const BoundKernel& k) {
 
 bool RowShading::takes(const SurfaceBinding& b) const {
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
-        if (*k && !(blocks_.takes(b, *k) && needsNoPoints(*k))) return false;
+        if (*k && !(blocks_.takes(*k) && needsNoPoints(*k))) return false;
     return b.surfaceS && b.areaLight < 0 && !b.moveS && !b.displacementS && !b.atmosphere.shader && b.lightOutputs.empty() &&
            b.aside.empty() && !b.matte && b.surface && !b.surface->moving;
 }

@@ -17,8 +17,8 @@
 namespace alpenglow::integrator {
 
 ScatterRays::ScatterRays(const StageSet& s, const VertexLobes& v, LobeSelection& selection, PhotonScatter& photonScatter)
-    : VertexStage(s, v), selection_(selection), unshadowed_(s), photonScatter_(photonScatter), accumulator_(s.accumulator),
-      guide_(s.guide), paths_(s.paths), media_(s.media), photons_(s.photons), subsurface_(s.subsurface) {}
+    : VertexStage(s, v), selection_(selection), photonScatter_(photonScatter), accumulator_(s.accumulator), guide_(s.guide),
+      paths_(s.paths), media_(s.media), photons_(s.photons), subsurface_(s.subsurface), unshadowed_(s) {}
 
 void ScatterRays::run(Sched& sched) {
     sent.clear();
@@ -196,6 +196,11 @@ float ScatterRays::roulette(const LobeVertex& l, const LobeRay& s, uint16_t& ask
     return std::max(q, 0.f);
 }
 
+UnshadowedRay ScatterRays::unshadowedRay(const LobeVertex& l, const Vec3& w) const {
+    const Vec3& from = l.elsewhere ? l.from : c_->points[size_t(l.point)].P;
+    return {l.point, l.rays, origin(l, w), w, l.maxDistance, l.lights && (l.elsewhere || l.delta), from, l.lit};
+}
+
 void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     const LobeVertex& l = requests_.lobes[size_t(s.lobe)];
     const ShadePoint& p = c_->points[size_t(s.point)];
@@ -212,7 +217,7 @@ void ScatterRays::sendRay(const LobeRay& s, Sched& sched) {
     const Color through = l.narrow && photon ? s.back : l.weight * (f * (scale / float(s.count)));
     if (!photon && l.trace && l.trace->map) extra.environment = l.tint * requests_.mapTowards(*l.trace, w, from.footprint.spread);
     if (TraceSums* of = !photon && l.trace && l.trace->sums ? accumulator_.sumsOf(l.target) : nullptr)
-        unshadowed_.add(*c_, l, l.lights && (l.elsewhere || l.delta), origin(l, w), w, through, extra.environment, *of);
+        unshadowed_.add(*c_, unshadowedRay(l, w), through, extra.environment, *of);
     Color weight = l.ownsTarget ? through : from.weight * through;
     if (photon) weight *= leftOfPhoton(*c_, size_t(s.point)) * photonScatter_.photonWay(l, w);
     if (!isFinite(weight)) return accumulator_.notFinite(*c_, from, l.site);

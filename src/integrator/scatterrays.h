@@ -45,13 +45,13 @@ private:
     void pick(size_t point, float number);
     void drawAgain(int turn);
     void throwDice(int turn);
+    UnshadowedRay unshadowedRay(const LobeVertex&, const Vec3& w) const;
     void sendRay(const LobeRay&, Sched&);
     bool intersectsEmitter(const LobeVertex&, const Vec3& w) const;
     /// Survival probability of the ray; 0: it is not sent.
     float roulette(const LobeVertex&, const LobeRay&, uint16_t& asked, const Color& weight) const;
     render::NumberRows numbers_;
     LobeSelection& selection_;
-    UnshadowedLight unshadowed_;
     PhotonScatter& photonScatter_;
     Accumulator& accumulator_;
     GuideRays& guide_;
@@ -59,6 +59,7 @@ private:
     MediaStacks& media_;
     PhotonStage& photons_;
     SubsurfaceWalks& subsurface_;
+    UnshadowedLight unshadowed_;
 };
 
 } // namespace alpenglow::integrator

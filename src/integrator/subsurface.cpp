@@ -302,6 +302,7 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     std::vector<float> indirect;
     for (const Exit& x : exits) indirect.push_back(asked_[size_t(x.asked)].indirect);
     if (blocks_.runExits(*c, indirect, sched)) {
+        skies(*c, sched);
         shadows_.flush(sched);
         return batches_.giveBack(std::move(c));
     }

@@ -45,7 +45,7 @@ void setPasses(Scene& s, float width, float window) {
 Traced gathering(const std::string& rib, const Settings& settings, float width = 0, float window = 0) {
     Scene s(rib, settings);
     setPasses(s, width, window);
-    return view(s);
+    return trace(s);
 }
 
 const std::string kMirrors =
@@ -178,7 +178,7 @@ TEST(BlockPhotons, OfMapsAreGathered) {
                 p.reflected[0] = p.reflected[1] = p.reflected[2] = 200;
             }
             setPhotonMap(*s.world, "room.photons", std::move(all));
-            return view(s);
+            return trace(s);
         };
         const Traced one = traced(single, true), all = traced(blocks, true);
         EXPECT_EQ(one.inBlocks, 0u);

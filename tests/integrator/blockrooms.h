@@ -15,8 +15,7 @@ inline Settings pathSettings() {
     s.hider = Hider::Path;
     return s;
 }
-/// What a camera sees of a scene.
-inline Traced view(Scene& scene) {
+inline Traced trace(Scene& scene) {
     std::vector<CameraRay> rays;
     const int side = nightly() ? 30 : 20;
     for (int i = 0; i < side * side; ++i) {
@@ -38,7 +37,7 @@ inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int max
     s.blocks = blocks;
     s.lanes = lanes;
     Scene scene(rib, s);
-    return view(scene);
+    return trace(scene);
 }
 
 inline const char* const kLights =

@@ -33,7 +33,6 @@ void BlockVertices::walkBelow(size_t b, BatchContext& c) {
 
 bool BlockVertices::runExits(BatchContext& c, std::span<const float> indirect, Sched& sched) {
     if (!usable_ || photons_.photonTrace() || !takesRays(c)) return false;
-    if (!std::all_of(indirect.begin(), indirect.end(), [](float x) { return x > 0; })) return false; // guide rays need light
     begin(c, false);
     if (!loadVertices(c)) return false;
     indirect_ = indirect;

@@ -33,10 +33,7 @@ void BlockVertices::walkBelow(size_t b, BatchContext& c) {
 }
 
 bool BlockVertices::runExits(BatchContext& c, std::span<const float> indirect, Sched& sched) {
-    const bool flies = flight_->on();
-    if (flies ? !flight_->fits(c) : !usable_ || !takesRays(c)) return false;
-    if (!flies && !std::all_of(indirect.begin(), indirect.end(), [](float x) { return x > 0; }))
-        return false; // guide rays need light
+    if (flight_->on() ? !flight_->fits(c) : !usable_ || !takesRays(c)) return false;
     begin(c, false);
     if (!loadVertices(c)) return false;
     indirect_ = indirect;

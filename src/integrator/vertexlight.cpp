@@ -19,6 +19,7 @@ void VertexLight::gather(BatchContext& c, Sched& sched) {
     if (!ambient_.asked.empty()) ambient_.gather(c);
     if (blocks_.runRequests(c, sched)) return;
     if (set_.photons.photonTrace()) set_.photons.takeModels(c, false);
+    if (context_.world.settings_.blocks && !requests_.lobes.empty()) fprintf(stderr, "POINTWAY accel %d\n", context_.world.accel_ != nullptr), abort();
     std::unique_ptr<VertexSampling> g = std::move(gather_); // moved out, so that a nested call makes its own
     if (!g) g = std::make_unique<VertexSampling>(set_);
     g->run(c, sched);

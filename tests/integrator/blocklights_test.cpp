@@ -342,7 +342,15 @@ TEST(BlockLights, SampleWhatTheRaysOfACallHit) {
                 expectSameBits(roomOf(shader, more), under(hider), hider == Hider::Path ? .3 : -1, shader + more, 2);
 }
 
-TEST(BlockLights, LightTheExitsOfWalksUnderOtherHiders) {
+TEST(BlockLights, LightTheExitsOfWalks) {
+    // Where the surface is clear, the energy rule leaves nothing of the light of surfaces.
+    writeShader("thinmilk", R"(surface thinmilk() {
+    normal n = faceforward(normalize(N), I);
+    Ci = Cs * subsurface(P, n, "scattering", color(20, 30, 40), "absorption", color(.5, .2, .1), "ior", 1.3);
+    Oi = mod(floor(9 * u), 3) / 2;
+})");
+    for (const std::string& more : {std::string(), kSky})
+        expectSameBits(roomOf("\"thinmilk\"", more), pathSettings(), .3, more, 4);
     writeShader("milky", R"(surface milky() {
     normal n = faceforward(normalize(N), I);
     Ci = Cs * subsurface(P, n, "scattering", color(20, 30, 40), "absorption", color(.5, .2, .1), "ior", 1.3);

@@ -22,16 +22,10 @@ static bool shareSite(const BlockLobes& s, const LobeVertex& l) {
 BlockVertices::Requested::Requested(BlockVertices& b, const StageSet& s)
     : b_(b), world_(b.world_), requests_(s.requests), unshadowed_(s) {}
 
-bool BlockVertices::Requested::takes(const BatchContext& c) const {
-    if (b_.flight_->on()) return b_.flight_->fits(c);
-    return b_.usable_;
-}
+void BlockVertices::runRequests(BatchContext& c, Sched& sched) { requested_->run(c, sched); }
 
-bool BlockVertices::runRequests(BatchContext& c, Sched& sched) { return requested_->run(c, sched); }
-
-bool BlockVertices::Requested::run(BatchContext& c, Sched& sched) {
-    if (requests_.lobes.empty() && !b_.flight_->on()) return true;
-    if (!takes(c)) return false;
+void BlockVertices::Requested::run(BatchContext& c, Sched& sched) {
+    if (requests_.lobes.empty() && !b_.flight_->on()) return;
     std::vector<AccumulatorId> targets = c.targets;
     for (const LobeVertex& l : requests_.lobes) targets[size_t(l.point)] = l.target;
     c.targets.swap(targets);
@@ -39,8 +33,6 @@ bool BlockVertices::Requested::run(BatchContext& c, Sched& sched) {
     if (b_.flight_->on()) b_.flight_->takeModels(c, false);
     b_.followLobes(c, sched);
     c.targets.swap(targets);
-    b_.counters_.inBlocks += b_.points_;
-    return true;
 }
 
 void BlockVertices::Requested::load(BatchContext& c) {

@@ -30,14 +30,12 @@ BlockVertices::BlockVertices(const StageSet& s)
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
     endsTrees_ = !set.localRoulette && world_.lightTraces_ > 0;
-    usable_ = set.blocks;
-    usable_ &= world_.accel_ != nullptr; // requires a complete world
     noSample_ = &store_.noSample;
     guided_ = std::make_unique<Guided>(*this, s.guide);
     requested_ = std::make_unique<Requested>(*this, s);
     gathered_ = std::make_unique<Photons>(*this, s);
     flight_ = std::make_unique<Flight>(*this, s);
-    if (!usable_) return;
+    if (!world_.accel_) return; // not a complete world
     for (const BoundLight& l : world_.lights_) inRows_.push_back(inRows(l, l.kernel));
     chosen_ = std::make_unique<ChosenLights>(*this);
 }
@@ -45,8 +43,9 @@ BlockVertices::BlockVertices(const StageSet& s)
 BlockVertices::~BlockVertices() = default;
 
 bool BlockVertices::takesRays(const BatchContext& c) const {
-    return std::none_of(c.rays.begin(), c.rays.end(),
-                        [&](const PathRay& r) { return r.quiet || r.scattered >= limits::kPathDepth; });
+    return world_.settings_.rowRequests && std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
+               return r.quiet || r.scattered >= limits::kPathDepth;
+           });
 }
 
 /// Whether blocks can process all lobes that the kernel has requested at the points of the batch, with a weight that is not 0.
@@ -72,12 +71,11 @@ static bool tracesSets(const WorldImpl& w, const BoundKernel& kernel) {
 
 bool BlockVertices::takes(const BatchContext& c) const {
     if (!asksBlocks(c) || c.aside || c.between || c.below || tracesSets(world_, *c.bound)) return false;
-    if (flight_->on()) return flight_->fits(c);
-    return usable_ && takesRays(c);
+    return takesRays(c);
 }
 
 bool BlockVertices::takes(const BoundKernel& kernel) const {
-    return usable_ && rules_.pickOne && kernel.blocks && !tracesSets(world_, kernel);
+    return world_.settings_.rowRequests && rules_.pickOne && kernel.blocks && !tracesSets(world_, kernel);
 }
 
 bool BlockVertices::run(BatchContext& c, Sched& sched) { return (c.emits.empty() && !flight_->on()) || follow(c, sched, false); }
@@ -90,14 +88,12 @@ bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
     return true;
 }
 
-bool BlockVertices::runModels(BatchContext& c, Sched& sched) {
-    if (!flight_->fits(c)) return false;
+void BlockVertices::runModels(BatchContext& c, Sched& sched) {
     begin(c, false);
     count_ = 0;
     loadVertices(c);
     flight_->takeModels(c, true);
     followLobes(c, sched);
-    return true;
 }
 
 void BlockVertices::begin(const BatchContext& c, bool waits) {

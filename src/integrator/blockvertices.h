@@ -1,6 +1,5 @@
-// Vertices whose kernel requests lobes only: from the kernel's requests to the next rays, 16 points at a time (lanes/stages.h).
-// Under path one lobe of a point is followed, under the other hiders all. All other batches are processed point by point
-// (vertexsampling.h), with the same bits.
+// From the requests of kernels to the next rays, 16 points at a time (lanes/stages.h). Under path one lobe of a point is
+// followed, under the other hiders all. Most requests are read in rows; the others one by one (blockrequests.h).
 #pragma once
 #include "base/numberlanes.h"
 #include "integrator/batchcontext.h"
@@ -15,29 +14,28 @@ class BlockVertices final : Stage, VertexBlocks {
 public:
     explicit BlockVertices(const StageSet&);
     ~BlockVertices();
-    /// Whether all requests of this kernel can be processed in blocks.
+    /// Whether all requests of this kernel can be read in rows.
     bool takes(const BoundKernel&) const;
-    /// Whether all requests of a batch whose kernel has run can be processed in blocks.
+    /// Whether all requests of a batch whose kernel has run can.
     bool takes(const BatchContext&) const;
-    /// Whether the rays that hit a batch can.
+    /// Whether the rays that hit a batch allow it.
     bool takesRays(const BatchContext&) const;
-    /// Lights the points and sends the next rays; leaves shadow rays in ShadowRays::queue. Returns false, without effect, if a
-    /// point needs processing on its own.
+    /// Reads the requests, lights the points and sends the next rays; leaves shadow rays in ShadowRays::queue. Returns false,
+    /// without effect, if a point needs requests of its own.
     bool run(BatchContext&, Sched&);
     /// The same for the requests of suspended strips. Returns false, without effect, if the strips must request one by one.
     bool run(BatchContext&, std::span<class KernelStrip* const>, Sched&);
     /// The same for points inside a medium, with its phase function as lobe. beside: by point, MediumEvents::lightDirection().
     /// needsPoints(): whether the batch needs its points.
-    bool run(BatchContext&, const Homogeneous&, std::span<const Vec3> beside, Sched&);
+    void run(BatchContext&, const Homogeneous&, std::span<const Vec3> beside, Sched&);
     /// The same for exits of subsurface walks, where light is gathered as by diffuse(). indirect: by point, factor of its ray's
     /// light.
-    bool runExits(BatchContext&, std::span<const float> indirect, Sched&);
-    /// The same for requests that were made point by point (Requests::lobes), all of points of this batch; removes them. Returns
-    /// false, without effect, if they need vertexsampling.h.
-    bool runRequests(BatchContext&, Sched&);
+    void runExits(BatchContext&, std::span<const float> indirect, Sched&);
+    /// The same for requests that were made one by one (Requests::lobes), all of points of this batch; removes them.
+    void runRequests(BatchContext&, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
     /// For photons, at surfaces that scatter by a photon shading model alone: those without one as matte ones.
-    bool runModels(BatchContext&, Sched&);
+    void runModels(BatchContext&, Sched&);
     /// Samples one light for such points and evaluates their lobes toward it, to `found`. False: not possible, no effect.
     bool light(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
 

@@ -1,5 +1,5 @@
 // Scenes with many lights: each point samples some lights at random (world/lightchooser.h), for vertices in blocks
-// (blockvertices.h). Samples of lights with the same kernel share blocks, one sample a lane. Same bits as vertexsampling.h.
+// (blockvertices.h). Samples of lights with the same kernel share blocks, one sample a lane.
 #pragma once
 #include "integrator/blockvertices.h"
 

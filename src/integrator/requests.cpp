@@ -1,4 +1,4 @@
-// Interprets the requests of kernels at points (docs/design/rsl.md). vertexsampling.h processes the lobes.
+// Interprets the requests of kernels at points (docs/design/rsl.md). blockrequests.h takes the lobes.
 #include "integrator/requests.h"
 #include "base/direction.h"
 #include "bsdf/sampling.h"
@@ -16,7 +16,6 @@
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/subsurfacewalks.h"
-#include "integrator/vertexsampling.h"
 #include "shadeops/distributions.h"
 #include "texture/lookup.h"
 #include "world/blocksite.h"
@@ -162,7 +161,6 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
         l.elsewhere = true;
         l.from = from;
     }
-    l.deltaLights = s.allLights;
     l.lobeOfShader = false;
     l.samples = occlusion_.samplesOf(samplesAskedOf(s, f), p.shape, s, c);
     return l.importance > 0 || photons_.photonTrace();

@@ -137,7 +137,7 @@ void RowShading::count(const BatchContext& c) {
     const uint64_t n = c.rays.size(), lanes = uint64_t(c.bound->kernel->lanes());
     Counters& of = counters_;
     of.points += n;
-    of.inBlocks += n;
+    of.inRows += n;
     ++of.batches;
     of.lanesUsed += n;
     of.lanesRun += (n + lanes - 1) / lanes * lanes;

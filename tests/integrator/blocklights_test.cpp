@@ -20,8 +20,8 @@ Settings under(Hider h) {
 void expectSameBits(const std::string& rib, const Settings& s, double least, const std::string& what, int depth = -1) {
     const Traced one = trace(rib, false, 16, depth, s), all = trace(rib, true, 16, depth, s);
     EXPECT_GT(sumOf(one), 1) << what;
-    EXPECT_EQ(one.inBlocks, 0u);
-    EXPECT_GT(double(all.inBlocks), double(all.points) * least) << what;
+    EXPECT_EQ(one.inRows, 0u);
+    EXPECT_GT(double(all.inRows), double(all.points) * least) << what;
     EXPECT_EQ(differences(one, all), 0u) << what;
     EXPECT_EQ(differences(one, trace(rib, true, 4, depth, s)), 0u) << what << ", kernels of 4 lanes";
     EXPECT_EQ(one.cut, all.cut) << what;
@@ -213,14 +213,14 @@ TEST(BlockLights, ChooseOfTheLightsThatAreOnWhereListsShareOne) {
                 Traced traced[2];
                 for (const bool blocks : {false, true}) {
                     Settings s = pathSettings();
-                    s.blocks = blocks;
+                    s.rowRequests = blocks;
                     Scene scene(rib, s);
                     shareOneList(*scene.world);
                     traced[blocks] = trace(scene);
                 }
                 EXPECT_GT(sumOf(traced[0]), 1) << many << more << shader;
                 EXPECT_EQ(differences(traced[0], traced[1]), 0u) << many << more << shader;
-                EXPECT_GT(traced[1].inBlocks, traced[1].points / 3) << many << more << shader;
+                EXPECT_GT(traced[1].inRows, traced[1].points / 3) << many << more << shader;
             }
 }
 

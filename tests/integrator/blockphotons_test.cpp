@@ -17,7 +17,7 @@ namespace {
 Settings withShipped(bool blocks, int lanes = 16) {
     Settings s = pathSettings();
     s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders");
-    s.blocks = blocks;
+    s.rowRequests = blocks;
     s.lanes = lanes;
     return s;
 }
@@ -105,8 +105,8 @@ TEST(BlockPhotons, AreGathered) {
         const std::string rib = roomOf("\"" + c.shader + "\"", kMirrors + c.more);
         const Traced one = gathering(rib, withShipped(false), c.width), all = gathering(rib, withShipped(true), c.width);
         const std::string what = c.shader + " " + c.more.substr(0, 20);
-        EXPECT_EQ(one.inBlocks, 0u);
-        EXPECT_GT(double(all.inBlocks), c.least * double(all.points)) << what;
+        EXPECT_EQ(one.inRows, 0u);
+        EXPECT_GT(double(all.inRows), c.least * double(all.points)) << what;
         EXPECT_EQ(differences(one, all), 0u) << what;
         if (chosen(turn++, 3))
             EXPECT_EQ(differences(one, gathering(rib, withShipped(true, 4), c.width)), 0u) << what << ", kernels of 4 lanes";
@@ -143,10 +143,10 @@ TEST(BlockPhotons, AreGatheredWhateverIsAsked) {
             roomOf("\"" + std::string(c.shader) + "\"",
                    (c.window > 0 ? moving : "") + kMirrors + "Attribute \"trace\" \"int maxspeculardepth\" 3\n");
         Settings single = c.settings;
-        single.blocks = false;
+        single.rowRequests = false;
         const Traced one = gathering(rib, single, c.width, c.window), all = gathering(rib, c.settings, c.width, c.window);
-        EXPECT_EQ(one.inBlocks, 0u);
-        EXPECT_GT(double(all.inBlocks), .33 * double(all.points)) << c.shader;
+        EXPECT_EQ(one.inRows, 0u);
+        EXPECT_GT(double(all.inRows), .33 * double(all.points)) << c.shader;
         EXPECT_EQ(differences(one, all), 0u) << c.shader;
     }
 }
@@ -164,7 +164,7 @@ TEST(BlockPhotons, OfMapsAreGathered) {
         Settings blocks = withShipped(true);
         blocks.hider = h;
         Settings single = blocks;
-        single.blocks = false;
+        single.rowRequests = false;
         const auto traced = [&](const Settings& settings, bool photons) {
             Scene s(rib, settings);
             std::vector<photonmap::Photon> all;
@@ -181,8 +181,8 @@ TEST(BlockPhotons, OfMapsAreGathered) {
             return trace(s);
         };
         const Traced one = traced(single, true), all = traced(blocks, true);
-        EXPECT_EQ(one.inBlocks, 0u);
-        EXPECT_GT(all.inBlocks, all.points / 3) << int(h);
+        EXPECT_EQ(one.inRows, 0u);
+        EXPECT_GT(all.inRows, all.points / 3) << int(h);
         EXPECT_EQ(differences(one, all), 0u) << int(h);
         EXPECT_GT(differences(one, traced(single, false)), 20u) << int(h) << ": no photons";
     }
@@ -192,7 +192,7 @@ namespace {
 
 struct Flown {
     std::vector<StoredPhoton> photons;
-    uint64_t inBlocks, points;
+    uint64_t inRows, points;
     long messages; ///< lines
 };
 Flown flown(const std::string& rib, const Settings& settings, const PhotonUse& use) {
@@ -202,7 +202,7 @@ Flown flown(const std::string& rib, const Settings& settings, const PhotonUse& u
     PhotonEmission::Thread thread(emission, s.diagnostics);
     Flown f;
     EXPECT_TRUE(thread.emit(3, 0, kPhotons, kPhotons, f.photons, nullptr));
-    f.inBlocks = thread.counters().inBlocks;
+    f.inRows = thread.counters().inRows;
     f.points = thread.counters().points;
     const std::string said = s.messages();
     f.messages = std::count(said.begin(), said.end(), '\n');
@@ -221,11 +221,11 @@ size_t differences(const Flown& a, const Flown& b) {
 void expectSame(const std::string& rib, const std::string& what, const PhotonUse& use = {.sky = false}, double least = .9,
                 const Settings& settings = withShipped(true)) {
     Settings single = settings, narrow = settings;
-    single.blocks = false;
+    single.rowRequests = false;
     narrow.lanes = (what.size() + rib.size()) % 2 ? 4 : 8;
     const Flown one = flown(rib, single, use), all = flown(rib, settings, use);
-    EXPECT_EQ(one.inBlocks, 0u);
-    EXPECT_GE(double(all.inBlocks), least * double(all.points)) << what;
+    EXPECT_EQ(one.inRows, 0u);
+    EXPECT_GE(double(all.inRows), least * double(all.points)) << what;
     EXPECT_GT(one.photons.size(), 10u) << what;
     EXPECT_EQ(differences(one, all), 0u) << what;
     EXPECT_EQ(one.messages, all.messages) << what;

@@ -8,7 +8,7 @@ namespace alpenglow::integrator::testing {
 
 struct Traced {
     std::vector<SampleResult> samples;
-    uint64_t inBlocks, points, cut;
+    uint64_t inRows, points, cut;
 };
 inline Settings pathSettings() {
     Settings s;
@@ -27,14 +27,14 @@ inline Traced trace(Scene& scene) {
     t.samples.resize(rays.size());
     Integrator integrator(scene.world, scene.diagnostics);
     integrator.trace(rays, t.samples, nullptr);
-    t.inBlocks = integrator.counters().inBlocks;
+    t.inRows = integrator.counters().inRows;
     t.points = integrator.counters().points;
     t.cut = integrator.counters().depthCap;
     return t;
 }
 inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = pathSettings()) {
     s.maxDepth = maxDepth;
-    s.blocks = blocks;
+    s.rowRequests = blocks;
     s.lanes = lanes;
     Scene scene(rib, s);
     return trace(scene);

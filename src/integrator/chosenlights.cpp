@@ -2,13 +2,13 @@
 #include "base/direction.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
-#include "integrator/blockphotons.h"
+#include "integrator/connection.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
 #include "integrator/medium.h"
-#include "integrator/ownshadows.h"
+#include "integrator/photongather.h"
 #include "integrator/shadowrays.h"
 #include "integrator/surfacepoints.h"
 #include "world/emitterfootprint.h"
@@ -17,8 +17,8 @@
 
 namespace alpenglow::integrator {
 
-BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
-    : b_(b), world_(b.world_), chosenHere_(size_t(kBlock) * LightTree::kMostChosen) {
+LightSampling::ChosenLights::ChosenLights(LightSampling& of, const StageSet& s, const VertexStages& v)
+    : VertexStage(s, v), lightSampling_(of), chosenHere_(size_t(kBlock) * LightTree::kMostChosen) {
     for (const WorldImpl::LightGroup& g : world_.lightGroups_)
         for (int k = 0; k < 4; ++k) all_.push_back({&g.kernel, (k & 1) != 0, {}});
     for (const BoundLight& l : world_.lights_) {
@@ -29,13 +29,13 @@ BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
 }
 
 /// Index of the lights that share a kernel, all of them with a density or without, and sampled in rows or not.
-int BlockVertices::ChosenLights::togetherOf(const BoundLight& l) const {
+int LightSampling::ChosenLights::togetherOf(const BoundLight& l) const {
     if (l.group < 0) return -1;
-    const bool rows = !isWide(l) && b_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel);
+    const bool rows = !isWide(l) && lightSampling_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel);
     return 4 * l.group + 2 * int(l.hasDensity()) + int(rows);
 }
 
-void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchContext& c, Sched& sched) {
+void LightSampling::ChosenLights::light(const WorldImpl::LightList& list, BatchContext& c, Sched& sched) {
     const std::vector<int>& on = world_.sampledOf(list);
     for (Together& t : all_) t.asked.clear(); // of a call that ended early
     choose(list);
@@ -62,37 +62,38 @@ void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchC
 }
 
 /// Samples lights, as often as the points want. group: the kernel that they share; null: a single light.
-void BlockVertices::ChosenLights::ask(const BoundKernel* group, bool rows, std::span<const Asked> asked, BatchContext& c,
+void LightSampling::ChosenLights::ask(const BoundKernel* group, bool rows, std::span<const Asked> asked, BatchContext& c,
                                       Sched& sched) {
-    for (b_.draw_ = 0; !asked.empty(); ++b_.draw_) {
-        b_.checksHits_ = b_.checksHits(world_.lights_[size_t(asked[0].light)]);
-        if (rows && !b_.checksHits_) askInRows(*group, asked, c);
+    for (v_.draw = 0; !asked.empty(); ++v_.draw) {
+        v_.checksHits = lightSampling_.checksHits(world_.lights_[size_t(asked[0].light)]);
+        if (rows && !v_.checksHits) askInRows(*group, asked, c);
         else askByPoints(group, asked, c);
-        if (b_.shadows_.queue.size() > kShadowsAtOnce) b_.shadows_.flush(sched);
-        if (!b_.several_) break;
+        if (lightSampling_.shadows_.queue.size() > kShadowsAtOnce) lightSampling_.shadows_.flush(sched);
+        if (!v_.several) break;
         std::vector<Asked> again;
         for (const Asked& a : asked)
-            if (b_.draw_ + 1 < uint32_t(b_.drawsOf(world_.lights_[size_t(a.light)], size_t(a.point)))) again.push_back(a);
+            if (v_.draw + 1 < uint32_t(lightSampling_.drawsOf(world_.lights_[size_t(a.light)], size_t(a.point))))
+                again.push_back(a);
         again_.swap(again);
         asked = again_;
     }
-    b_.draw_ = 0;
+    v_.draw = 0;
 }
 
 /// Chooses the lights of each point, as indices in the list.
-void BlockVertices::ChosenLights::choose(const WorldImpl::LightList& list) {
-    b_.drawNumbers(kChooseLight << 1 | render::SampleNumbers::kSingle, b_.choices_);
+void LightSampling::ChosenLights::choose(const WorldImpl::LightList& list) {
+    v_.drawNumbers(kChooseLight << 1 | render::SampleNumbers::kSingle, v_.choices);
     chosen_.clear();
     const std::vector<int>& on = world_.sampledOf(list);
     begin_.assign(on.size() + 1, 0);
     const LightTree first = world_.chooserAt(list, 0).tree(), deeper = world_.chooserAt(list, 1).tree();
-    for (size_t b = 0; b < b_.blocks_; ++b) {
-        const VertexBlock& v = b_.vertices_[b];
+    for (size_t b = 0; b < v_.blocks; ++b) {
+        const VertexBlock& v = v_.vertices[b];
         Lanes begins = 0;
         for (int i = 0; i < kBlock; ++i) begins |= Lanes(v.bounces[i] == 0) << i;
-        for (const auto& [tree, lanes] : {std::pair(&first, b_.lit_[b] & begins), std::pair(&deeper, b_.lit_[b] & ~begins)}) {
+        for (const auto& [tree, lanes] : {std::pair(&first, v_.lit[b] & begins), std::pair(&deeper, v_.lit[b] & ~begins)}) {
             if (!lanes) continue;
-            const int n = b_.stages_.chooseLights(*tree, v.P, b_.choices_[b].x, lanes, chosenHere_.data());
+            const int n = stages_.chooseLights(*tree, v.P, v_.choices[b].x, lanes, chosenHere_.data());
             for (const ChosenLight& l : std::span(chosenHere_).first(size_t(n))) {
                 chosen_.push_back({l.light, int(b) * kBlock + l.lane, l.chance});
                 ++begin_[size_t(l.light)];
@@ -107,48 +108,48 @@ void BlockVertices::ChosenLights::choose(const WorldImpl::LightList& list) {
     begin_[0] = 0;
 }
 
-void BlockVertices::ChosenLights::askInRows(const BoundKernel& kernel, std::span<const Asked> asked, BatchContext& c) {
+void LightSampling::ChosenLights::askInRows(const BoundKernel& kernel, std::span<const Asked> asked, BatchContext& c) {
     gatherPoints(asked);
     placeLights();
-    auto call = b_.batches_.take();
+    auto call = lightSampling_.batches_.take();
     const shading::Batch& answers = run(kernel, asked, *call);
-    b_.values_.clear();
+    v_.values.clear();
     for (size_t k = 0; k < count_; ++k) {
         takeLight(k, answers, c);
         if (blocks_[k].lights.asked) connect(blocks_[k], c);
     }
-    b_.batches_.giveBack(std::move(call));
+    lightSampling_.batches_.giveBack(std::move(call));
 }
 
 /// The same where light samples need points. group: the kernel that the lights share; null: a single light. Lights that filter
 /// over their surface are asked for one call site after the other: their lobes differ in width.
-void BlockVertices::ChosenLights::askByPoints(const BoundKernel* group, std::span<const Asked> asked, BatchContext& c) {
+void LightSampling::ChosenLights::askByPoints(const BoundKernel* group, std::span<const Asked> asked, BatchContext& c) {
     gatherPoints(asked);
     drawNumbers();
-    b_.surfaces_.pointsOfRows(c);
+    lightSampling_.surfaces_.pointsOfRows(c);
     if (std::none_of(asked.begin(), asked.end(), [&](const Asked& a) { return wide_[size_t(a.light)] != 0; }))
         return askOnce(group, c);
-    for (size_t k = 0; k < b_.count_; ++k) {
-        b_.onlySite_ = int(k);
+    for (size_t k = 0; k < v_.count; ++k) {
+        v_.onlySite = int(k);
         askOnce(group, c);
     }
-    b_.onlySite_ = -1;
+    v_.onlySite = -1;
 }
 
-void BlockVertices::ChosenLights::askOnce(const BoundKernel* group, BatchContext& c) {
+void LightSampling::ChosenLights::askOnce(const BoundKernel* group, BatchContext& c) {
     placeQueries(c);
     if (of_.empty()) return;
     std::vector<const BoundLight*> lights;
     for (const auto& [k, lane] : of_) lights.push_back(&world_.lights_[size_t(blocks_[k].asked[lane]->light)]);
-    b_.askQueries(*lights[0], group, lights, c);
+    lightSampling_.askQueries(*lights[0], group, lights, c);
     for (size_t n = 0; n < of_.size(); ++n) {
         const auto& [k, lane] = of_[n];
         Questions& q = blocks_[k];
-        const LightValue& v = b_.values_[n];
+        const LightValue& v = v_.values[n];
         if (v.lit && !isFinite(v.Cl)) {
-            b_.accumulator_.notFinite(&c.rays[size_t(q.asked[lane]->point)], "Cl", lights[n]->instance.get());
+            lightSampling_.accumulator_.notFinite(&c.rays[size_t(q.asked[lane]->point)], "Cl", lights[n]->instance.get());
         } else if (v.lit && v.Cl != Color(0)) {
-            BlockVertices::takeValue(q.lights, lane, *lights[n], v, b_.queries_[n], b_.asked_[n].sample);
+            lightSampling_.takeValue(q.lights, lane, *lights[n], v, v_.queries[n], v_.asked[n].sample);
             q.lights.density[lane] *= q.asked[lane]->chance;
             q.says[lane] = int32_t(n);
         }
@@ -158,10 +159,10 @@ void BlockVertices::ChosenLights::askOnce(const BoundKernel* group, BatchContext
 }
 
 /// Makes points on the lights one by one: BlockVertices::queries_ and asked_.
-void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
-    std::vector<ShadePoint>& queries = b_.queries_;
-    std::vector<BlockQuery>& asked = b_.asked_;
-    const BlockVertices::Site* const only = b_.onlySite_ < 0 ? nullptr : &b_.sites_[size_t(b_.onlySite_)];
+void LightSampling::ChosenLights::placeQueries(const BatchContext& c) {
+    std::vector<ShadePoint>& queries = v_.queries;
+    std::vector<BlockQuery>& asked = v_.asked;
+    const Site* const only = v_.onlySite < 0 ? nullptr : &v_.sites[size_t(v_.onlySite)];
     asked.clear();
     of_.clear();
     for (size_t k = 0; k < count_; ++k) {
@@ -174,13 +175,15 @@ void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
             const int lane = std::countr_zero(left);
             const size_t point = size_t(q.asked[lane]->point);
             const BoundLight& light = world_.lights_[size_t(q.asked[lane]->light)];
-            if (only && !(b_.lightsAt(*only, light, point) && b_.draw_ < uint32_t(b_.drawsOf(*only, point)))) continue;
+            if (only &&
+                !(lightSampling_.lightsAt(*only, light, point) && v_.draw < uint32_t(lightSampling_.drawsOf(*only, point))))
+                continue;
             const LightNumbers u{{pairs_[k].x[lane], pairs_[k].y[lane]}, choices_.empty() ? 0 : choices_[k].x[lane]};
             if (asked.size() == queries.size()) queries.emplace_back(); // earlier queries are overwritten
             ShadePoint& at = queries[asked.size()];
             BlockQuery& a = asked.emplace_back();
             a.point = int(point);
-            if (!b_.placeQuery(light, nullptr, u, c.points[point], at, a.sample)) {
+            if (!lightSampling_.placeQuery(light, nullptr, u, c.points[point], at, a.sample)) {
                 asked.pop_back();
                 continue;
             }
@@ -194,7 +197,7 @@ void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
 }
 
 /// Copies the points of the light samples into rows; the last one repeats if a block is not full.
-void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
+void LightSampling::ChosenLights::gatherPoints(std::span<const Asked> asked) {
     count_ = (asked.size() + kBlock - 1) / kBlock;
     blocks_.resize(std::max(blocks_.size(), count_));
     pairs_.resize(count_);
@@ -209,7 +212,7 @@ void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
         for (size_t i = 0; i < size_t(kBlock); ++i) {
             const Asked& a = asked[first + std::min(i, n - 1)];
             q.asked[i] = &a;
-            const VertexBlock& v = b_.vertices_[size_t(a.point / kBlock)];
+            const VertexBlock& v = v_.vertices[size_t(a.point / kBlock)];
             const size_t at = size_t(a.point % kBlock);
             for (int r = 0; r < 3; ++r) {
                 to.P[r][i] = v.P[r][at];
@@ -222,9 +225,9 @@ void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
             numbers.high[i] = v.high[at];
             numbers.index[i] = v.index[at];
             const BoundLight& light = world_.lights_[size_t(a.light)];
-            if (b_.several_)
-                b_.nameDraw(b_.rays_[size_t(a.point / kBlock)], int(at), uint32_t(b_.drawsOf(light, size_t(a.point))), numbers,
-                            int(i));
+            if (v_.several)
+                lightSampling_.nameDraw(v_.rays[size_t(a.point / kBlock)], int(at),
+                                        uint32_t(lightSampling_.drawsOf(light, size_t(a.point))), numbers, int(i));
             const bool placed = light.kind == LightKind::Area || light.isSky();
             numbers.vertex[i] = placed ? v.lightVertex[at] : v.vertex[at];
             numbers.stream[i] = (kLightPoint + uint32_t(a.light)) << 1;
@@ -234,7 +237,7 @@ void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
 }
 
 /// Makes points on the lights: P and N of LightRows, and samples of emitters.
-void BlockVertices::ChosenLights::placeLights() {
+void LightSampling::ChosenLights::placeLights() {
     const size_t n = count_ * kBlock;
     lamp_.resize(9 * n);
     const bool emitters = world_.lights_[size_t(blocks_[0].asked[0]->light)].kind == LightKind::Area;
@@ -257,7 +260,7 @@ void BlockVertices::ChosenLights::placeLights() {
     }
 }
 
-void BlockVertices::ChosenLights::drawNumbers() {
+void LightSampling::ChosenLights::drawNumbers() {
     bool choices = false;
     for (size_t k = 0; k < count_; ++k)
         for (const Asked* a : blocks_[k].asked) choices |= takesChoice(world_.lights_[size_t(a->light)]);
@@ -272,7 +275,7 @@ void BlockVertices::ChosenLights::drawNumbers() {
     render::drawBlocks(pairs_);
 }
 
-void BlockVertices::ChosenLights::placeOnEmitters(size_t k) {
+void LightSampling::ChosenLights::placeOnEmitters(size_t k) {
     Questions& q = blocks_[k];
     alignas(64) double share[kBlock];
     for (size_t i = 0; i < size_t(kBlock); ++i) {
@@ -284,11 +287,11 @@ void BlockVertices::ChosenLights::placeOnEmitters(size_t k) {
     }
     const size_t n = count_ * kBlock;
     float* P = lamp_.data() + k * kBlock;
-    q.there &= b_.stages_.placeEach(q.points, q.lamp, pairs_[k].x, pairs_[k].y, share, q.lights, P, P + 3 * n, int(n));
+    q.there &= stages_.placeEach(q.points, q.lamp, pairs_[k].x, pairs_[k].y, share, q.lights, P, P + 3 * n, int(n));
 }
 
 /// Runs the kernel over the light samples, each with the parameters of its light.
-const shading::Batch& BlockVertices::ChosenLights::run(const BoundKernel& kernel, std::span<const Asked> asked,
+const shading::Batch& LightSampling::ChosenLights::run(const BoundKernel& kernel, std::span<const Asked> asked,
                                                        BatchContext& call) {
     const size_t n = count_ * kBlock;
     views_.clear();
@@ -313,14 +316,14 @@ const shading::Batch& BlockVertices::ChosenLights::run(const BoundKernel& kernel
     const std::span<const float> rows(lamp_);
     call.batch->assign(kernel.kernel, *kernel.plan, {rows.first(3 * n), rows.subspan(3 * n, 3 * n), rows.subspan(6 * n, 3 * n)},
                        views_, viewOf_);
-    b_.inputs_.bind(call.batch->call(), call);
+    lightSampling_.inputs_.bind(call.batch->call(), call);
     kernel.kernel->run(&call.batch->call());
     call.ran();
     return *call.batch;
 }
 
 /// Reads the radiance of the lights from the outputs of their kernel.
-void BlockVertices::ChosenLights::takeLight(size_t k, const shading::Batch& from, const BatchContext& c) {
+void LightSampling::ChosenLights::takeLight(size_t k, const shading::Batch& from, const BatchContext& c) {
     Questions& q = blocks_[k];
     LightBlock& l = q.lights;
     const BoundLight& first = world_.lights_[size_t(q.asked[0]->light)]; // outputs have the same indices in all of them
@@ -332,7 +335,7 @@ void BlockVertices::ChosenLights::takeLight(size_t k, const shading::Batch& from
     for (int r = 0; r < 3; ++r) std::copy_n(row(first.outCl, r), kBlock, l.Cl[r]);
     kept(first.nonDiffuse, l.keptDiffuse);
     kept(first.nonSpecular, l.keptSpecular);
-    if (!l.emitter) b_.placeFar(first, from, at, l);
+    if (!l.emitter) lightSampling_.placeFar(first, from, at, l);
     for (Lanes left = q.there; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         const BoundLight& light = world_.lights_[size_t(q.asked[i]->light)];
@@ -343,7 +346,7 @@ void BlockVertices::ChosenLights::takeLight(size_t k, const shading::Batch& from
             for (int r = 0; r < 3; ++r) l.Cl[r][i] = Cl[r];
         }
         if (light.outLit >= 0 && row(light.outLit, 0)[i] == 0) continue;
-        if (!isFinite(Cl)) b_.accumulator_.notFinite(&c.rays[size_t(q.asked[i]->point)], "Cl", light.instance.get());
+        if (!isFinite(Cl)) lightSampling_.accumulator_.notFinite(&c.rays[size_t(q.asked[i]->point)], "Cl", light.instance.get());
         if (!isFinite(Cl) || Cl == Color(0)) continue;
         l.asked |= 1u << i;
         if (l.emitter) {
@@ -357,17 +360,17 @@ void BlockVertices::ChosenLights::takeLight(size_t k, const shading::Batch& from
 }
 
 /// Reads the shadow parameters of a light. at: index in the batch.
-void BlockVertices::ChosenLights::takeShadow(Questions& q, int i, const Vec3& L, const shading::Batch& from, size_t at) {
+void LightSampling::ChosenLights::takeShadow(Questions& q, int i, const Vec3& L, const shading::Batch& from, size_t at) {
     const BoundLight& light = world_.lights_[size_t(q.asked[i]->light)];
     LightValue v;
-    if (!b_.asksShadowDisk(light, from, at, v)) return;
+    if (!lightSampling_.asksShadowDisk(light, from, at, v)) return;
     v.L = L;
-    q.says[i] = int32_t(b_.values_.size());
-    b_.values_.push_back(v);
+    q.says[i] = int32_t(v_.values.size());
+    v_.values.push_back(v);
 }
 
 /// Copies the evaluated lobes of a call site at the points of the samples. Returns the lanes that sample the light.
-Lanes BlockVertices::ChosenLights::gatherLobes(const Questions& q, const BlockVertices::Site& s) {
+Lanes LightSampling::ChosenLights::gatherLobes(const Questions& q, const Site& s) {
     Lanes asked = 0;
     const float* from[kBlock]; // by lane: first row of the lobe's block, at its column
     for (int i = 0; i < kBlock; ++i) {
@@ -378,8 +381,9 @@ Lanes BlockVertices::ChosenLights::gatherLobes(const Questions& q, const BlockVe
         for (int r = 0; r < 3; ++r) lobe_.weight[r][i] = l.weight[r][at];
         lobe_.chosen[i] = l.chosen[at];
         const BoundLight& light = world_.lights_[size_t(a.light)];
-        const bool samples = ((l.lights & ~b_.gathered_->bring(l, light)) >> at & 1) && b_.samples(s, light) &&
-                             (b_.draw_ == 0 || b_.draw_ < uint32_t(b_.drawsOf(s, size_t(a.point))));
+        const bool samples = ((l.lights & ~lightSampling_.gathered_.bring(l, light)) >> at & 1) &&
+                             lightSampling_.samples(s, light) &&
+                             (v_.draw == 0 || v_.draw < uint32_t(lightSampling_.drawsOf(s, size_t(a.point))));
         asked |= Lanes(samples) << i;
     }
     lobe_.asked = lobe_.lights = asked & q.lights.asked;
@@ -400,10 +404,9 @@ Lanes BlockVertices::ChosenLights::gatherLobes(const Questions& q, const BlockVe
 }
 
 /// Makes the shadow rays of a block of samples: one each, for all lobes of its point.
-void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
-    BlockVertices& b = b_;
-    b.stages_.aim(q.points, q.lights, b.shadow_);
-    std::fill_n(b.sent_, kBlock, -1);
+void LightSampling::ChosenLights::connect(Questions& q, BatchContext& c) {
+    stages_.aim(q.points, q.lights, v_.shadow);
+    std::fill_n(v_.sent, kBlock, -1);
     size_t points[kBlock] = {};
     const BoundLight* lights[kBlock];
     for (int i = 0; i < kBlock; ++i) {
@@ -413,24 +416,26 @@ void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
     q.lights.parted = c.between;
     for (Lanes left = c.between ? q.there & q.lights.asked : 0; left; left &= left - 1) {
         const int i = std::countr_zero(left);
-        q.lights.part[i] = b.mediumEvents_.shareOfDistance(c.flown[points[i]], world_.lights_[size_t(q.asked[i]->light)]);
+        q.lights.part[i] =
+            lightSampling_.mediumEvents_.shareOfDistance(c.flown[points[i]], world_.lights_[size_t(q.asked[i]->light)]);
     }
     const Lanes placed = q.lights.asked;
-    for (size_t k = 0; k < b.count_; ++k) {
-        const BlockVertices::Site& s = b.sites_[k];
-        if (b.onlySite_ >= 0 && b.onlySite_ != int(k)) continue;
+    for (size_t k = 0; k < v_.count; ++k) {
+        const Site& s = v_.sites[k];
+        if (v_.onlySite >= 0 && v_.onlySite != int(k)) continue;
         q.lights.asked = placed;
         q.lights.asked = s.lights ? gatherLobes(q, s) : 0;
         if (!q.lights.asked) continue;
-        OwnShadows own(b, s);
+        Connection::OwnShadows own(lightSampling_.connection_, s);
         own.limit(s, points, lights, q.says, q.lights);
         const Lanes asked = lobe_.lights = q.lights.asked;
-        s.lanes->evaluate(lobe_.lobe[0], asked, q.lights.w[0], b.value_[0]);
-        for (Lanes some = b.contribute(s, q.points, lobe_, q.lights, c, points); some; some &= some - 1) {
+        s.lanes->evaluate(lobe_.lobe[0], asked, q.lights.w[0], v_.value[0]);
+        for (Lanes some = lightSampling_.connection_.contribute(s, q.points, lobe_, q.lights, c, points); some;
+             some &= some - 1) {
             const int i = std::countr_zero(some);
-            const LightValue* says = q.says[i] < 0 ? nullptr : &b.values_[size_t(q.says[i])];
+            const LightValue* says = q.says[i] < 0 ? nullptr : &v_.values[size_t(q.says[i])];
             const Vec3 w(q.lights.w[0][i], q.lights.w[1][i], q.lights.w[2][i]);
-            b.sendShadow(s, points[i], size_t(i), w, *lights[i], says, c);
+            lightSampling_.connection_.sendShadow(s, points[i], size_t(i), w, *lights[i], says, c);
         }
     }
 }

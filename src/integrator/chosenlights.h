@@ -1,14 +1,14 @@
-// Scenes with many lights: each point samples some lights at random (world/lightchooser.h), for vertices in blocks
-// (blockvertices.h). Samples of lights with the same kernel share blocks, one sample a lane.
+// Scenes with many lights: each point samples some lights at random (world/lightchooser.h). Samples of lights with the same
+// kernel share blocks, one sample a lane.
 #pragma once
-#include "integrator/blockvertices.h"
+#include "integrator/lightsampling.h"
 
 namespace alpenglow::integrator {
 
-class BlockVertices::ChosenLights {
+class LightSampling::ChosenLights final : VertexStage {
 public:
-    explicit ChosenLights(BlockVertices&);
-    /// Lights the points of a batch that BlockVertices::lit_ marks. Leaves shadow rays in ShadowRays::queue.
+    ChosenLights(LightSampling&, const StageSet&, const VertexStages&);
+    /// Lights the points of a batch that VertexBlocks::lit marks. Leaves shadow rays in ShadowRays::queue.
     void light(const WorldImpl::LightList&, BatchContext&, Sched&);
 
 private:
@@ -32,7 +32,7 @@ private:
         const Asked* asked[kBlock] = {};
         const FlatEmitter* lamp[kBlock] = {}; ///< for an emitter, its shape
         uint32_t visibility[kBlock] = {};     ///< of that shape
-        int32_t says[kBlock] = {};            ///< index in BlockVertices::values_; -1: none
+        int32_t says[kBlock] = {};            ///< index in VertexBlocks::values; -1: none
     };
 
     int togetherOf(const BoundLight&) const;
@@ -50,10 +50,9 @@ private:
     void takeLight(size_t block, const shading::Batch&, const BatchContext&);
     void takeShadow(Questions&, int lane, const Vec3& L, const shading::Batch&, size_t at);
     void connect(Questions&, BatchContext&);
-    Lanes gatherLobes(const Questions&, const BlockVertices::Site&);
+    Lanes gatherLobes(const Questions&, const Site&);
 
-    BlockVertices& b_;
-    const WorldImpl& world_;
+    LightSampling& lightSampling_;
     std::vector<int> together_; ///< by light: index in all_; -1: it has a kernel of its own
     std::vector<Vec3> origins_; ///< by light
     std::vector<Together> all_;
@@ -66,7 +65,7 @@ private:
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_;
     std::vector<ChosenLight> chosenHere_;    ///< for one block
-    std::vector<std::pair<size_t, int>> of_; ///< by BlockVertices::asked_: block and lane
+    std::vector<std::pair<size_t, int>> of_; ///< by VertexBlocks::asked: block and lane
     std::vector<char> wide_;                 ///< by light: it filters over its surface (isWide())
     std::vector<Asked> again_;               ///< those that take further samples
     LobeBlock lobe_;

@@ -4,13 +4,14 @@
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
-#include "integrator/blockvertices.h"
+#include "integrator/blocklobes.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/mediastacks.h"
 #include "integrator/medium.h"
 #include "integrator/raystore.h"
 #include "integrator/shadowrays.h"
+#include "integrator/vertexlight.h"
 
 namespace alpenglow::integrator {
 
@@ -112,7 +113,7 @@ private:
             c->flown.emplace_back().t = n.t;
         }
         std::vector<BlockLit> found;
-        const bool done = stage_.blocks_.light(*c, *medium_.homogeneous, light_, found);
+        const bool done = stage_.vertexLight_.lightMedium(*c, *medium_.homogeneous, light_, found);
         for (const BlockLit& l : found) {
             const PathRay& r = c->rays[l.point];
             const Vec3 from = r.origin + r.dir * points_[l.point].t, way = l.end - from;

@@ -4,7 +4,6 @@
 #include "integrator/accumulator.h"
 #include "integrator/atmosphere.h"
 #include "integrator/batchpool.h"
-#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
@@ -21,7 +20,7 @@
 namespace alpenglow::integrator {
 
 MediumEvents::MediumEvents(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), atmosphere_(s.atmosphere), batches_(s.batches), blocks_(s.blocks),
+    : Stage(s.context), accumulator_(s.accumulator), atmosphere_(s.atmosphere), batches_(s.batches),
       segmentEvents_(s.segmentEvents), lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths),
       media_(s.media), store_(s.store), requests_(s.requests), shadows_(s.shadows), vertexLight_(s.vertexLight) {}
 
@@ -264,8 +263,8 @@ void MediumEvents::scatter(std::span<RaySegment> segmentEvents, std::span<const 
 
 /// Gathers light at points in a medium. lights_: by point, lightDirection().
 void MediumEvents::gather(BatchContext& c, const Medium& m, Sched& sched) {
-    if (blocks_.needsPoints(*c.binding)) placePoints(c, m);
-    blocks_.run(c, *m.homogeneous, lights_, sched);
+    if (vertexLight_.needsPoints(*c.binding)) placePoints(c, m);
+    vertexLight_.runMedium(c, *m.homogeneous, lights_, sched);
 }
 
 void MediumEvents::placePoints(BatchContext& c, const Medium& m) const {

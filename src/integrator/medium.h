@@ -32,7 +32,7 @@ class Accumulator;
 class Atmosphere;
 struct BatchContext;
 class BatchPool;
-class BlockVertices;
+class VertexLight;
 class SegmentEvents;
 class LightKernels;
 class LightPathStates;
@@ -42,7 +42,6 @@ class RayStore;
 class Requests;
 class ShadowRays;
 struct StageSet;
-class VertexLight;
 
 /// Absorption and scattering in media, under path. Each segment samples a distance in proportion to transmittance: one of the
 /// three channels is chosen by path throughput, and the density is the mixture of all three. Rays that reach their surface
@@ -92,7 +91,6 @@ private:
     Accumulator& accumulator_;
     Atmosphere& atmosphere_;
     BatchPool& batches_;
-    BlockVertices& blocks_;
     SegmentEvents& segmentEvents_;
     LightKernels& lightKernels_;
     LitSurfaces& litSurfaces_;

@@ -1,7 +1,6 @@
 // Surfaces with a photon shading model (Attribute "photon" "shadingmodel"), and photon map lookups at surfaces.
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
-#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/emission.h"
 #include "integrator/lightpathstates.h"
@@ -12,6 +11,7 @@
 #include "integrator/stageset.h"
 #include "integrator/surfaceshading.h"
 #include "integrator/transparency.h"
+#include "integrator/vertexlight.h"
 #include "shadeops/specular.h"
 #include "world/mediaabout.h"
 #include <algorithm>
@@ -24,8 +24,8 @@ PhotonTrace& PhotonStage::begin() {
 }
 
 PhotonStage::PhotonStage(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), blocks_(s.blocks), paths_(s.paths), media_(s.media), store_(s.store),
-      shading_(s.shading), transparency_(s.transparency) {}
+    : Stage(s.context), accumulator_(s.accumulator), vertexLight_(s.vertexLight), paths_(s.paths), media_(s.media),
+      store_(s.store), shading_(s.shading), transparency_(s.transparency) {}
 
 namespace {
 
@@ -108,7 +108,7 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
                          : Color(std::clamp(1 - o.x, 0.f, 1.f), std::clamp(1 - o.y, 0.f, 1.f), std::clamp(1 - o.z, 0.f, 1.f));
         c.clear[i] = c.clear[i] * transparency_.leftBehind(c, int(i));
     }
-    blocks_.runModels(c, sched);
+    vertexLight_.runModels(c, sched);
     for (size_t i = 0; i < n; ++i)
         if (const Color clear = transparency_.goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
             transparency_.continueBehind(world_.bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear,

@@ -7,7 +7,7 @@
 namespace alpenglow::integrator {
 
 class Accumulator;
-class BlockVertices;
+class VertexLight;
 class LightPathStates;
 class MediaStacks;
 class RayStore;
@@ -59,7 +59,7 @@ private:
     std::unordered_map<int, const photonmap::PhotonMap*> globalMaps_; ///< by binding
     std::unique_ptr<PhotonTrace> photonTrace_;
     Accumulator& accumulator_;
-    BlockVertices& blocks_;
+    VertexLight& vertexLight_;
     const LightPathStates& paths_;
     MediaStacks& media_;
     RayStore& store_;

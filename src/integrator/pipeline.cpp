@@ -5,7 +5,6 @@
 #include "integrator/ambientlight.h"
 #include "integrator/atmosphere.h"
 #include "integrator/batchpool.h"
-#include "integrator/blockvertices.h"
 #include "integrator/cameraoutputs.h"
 #include "integrator/depthrays.h"
 #include "integrator/displacement.h"
@@ -73,14 +72,13 @@ struct Pipeline::Parts {
     BatchPool batches;
     KernelInputs inputs;
     Displacement displacement;
-    BlockVertices blocks;
+    VertexLight vertexLight;
     CameraOutputs cameraOutputs;
     SurfaceShading shading;
     RowShading rowShading;
     WaitingKernels waitingKernels;
     Requests requests;
     AmbientLight ambient;
-    VertexLight vertexLight;
     SubsurfaceWalks subsurface;
     PhotonStage photons;
     LightOutputs lightOutputs;
@@ -90,16 +88,16 @@ struct Pipeline::Parts {
 
 Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
     : context(std::move(w), d),
-      set{context,      store,       paths,         accumulator,  intersector, queues,         surfaces,  segmentEvents,
-          emitted,      litSurfaces, transparency,  lightKernels, nested,      mediumEvents,   occlusion, records,
-          gathers,      guide,       shadows,       opacities,    media,       atmosphere,     batches,   inputs,
-          displacement, blocks,      cameraOutputs, shading,      rowShading,  waitingKernels, requests,  ambient,
-          vertexLight,  subsurface,  photons,       lightOutputs, depthRays,   lastSkies},
+      set{context,      store,         paths,        accumulator,  intersector,    queues,       surfaces,  segmentEvents,
+          emitted,      litSurfaces,   transparency, lightKernels, nested,         mediumEvents, occlusion, records,
+          gathers,      guide,         shadows,      opacities,    media,          atmosphere,   batches,   inputs,
+          displacement, cameraOutputs, shading,      rowShading,   waitingKernels, requests,     ambient,   vertexLight,
+          subsurface,   photons,       lightOutputs, depthRays,    lastSkies},
       store(set), paths(set), accumulator(set), intersector(set), queues(set), surfaces(set), segmentEvents(set), emitted(set),
       litSurfaces(set), transparency(set), lightKernels(set), nested(set), mediumEvents(set), occlusion(set), records(set),
       gathers(set), guide(set), shadows(set), opacities(set), media(set), atmosphere(set), batches(set), inputs(set),
-      displacement(set), blocks(set), cameraOutputs(set), shading(set), rowShading(set), waitingKernels(set), requests(set),
-      ambient(set), vertexLight(set), subsurface(set), photons(set), lightOutputs(set), depthRays(set), lastSkies(set) {
+      displacement(set), vertexLight(set), cameraOutputs(set), shading(set), rowShading(set), waitingKernels(set), requests(set),
+      ambient(set), subsurface(set), photons(set), lightOutputs(set), depthRays(set), lastSkies(set) {
     const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };
     const WorldImpl& world = context.world;
     if (std::any_of(world.media_.begin(), world.media_.end(), event)) segmentEvents.happens(mediumEvents);

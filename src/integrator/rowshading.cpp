@@ -1,7 +1,6 @@
 #include "integrator/rowshading.h"
 #include "integrator/accumulator.h"
 #include "integrator/ambientlight.h"
-#include "integrator/blockvertices.h"
 #include "integrator/cameraoutputs.h"
 #include "integrator/context.h"
 #include "integrator/gathercalls.h"
@@ -17,16 +16,17 @@
 #include "integrator/surfacepoints.h"
 #include "integrator/surfaceshading.h"
 #include "integrator/transparency.h"
+#include "integrator/vertexlight.h"
 #include "world/blocksite.h"
 #include <algorithm>
 
 namespace alpenglow::integrator {
 
 RowShading::RowShading(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), blocks_(s.blocks), cameraOutputs_(s.cameraOutputs),
-      segmentEvents_(s.segmentEvents), gathers_(s.gathers), inputs_(s.inputs), paths_(s.paths), photons_(s.photons),
-      store_(s.store), requests_(s.requests), shadows_(s.shadows), surfaces_(s.surfaces), shading_(s.shading),
-      transparency_(s.transparency) {
+    : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), vertexLight_(s.vertexLight),
+      cameraOutputs_(s.cameraOutputs), segmentEvents_(s.segmentEvents), gathers_(s.gathers), inputs_(s.inputs), paths_(s.paths),
+      photons_(s.photons), store_(s.store), requests_(s.requests), shadows_(s.shadows), surfaces_(s.surfaces),
+      shading_(s.shading), transparency_(s.transparency) {
     takes_.assign(!world_.moves_ && world_.media_.empty() ? size_t(world_.groups_) : 0, 1);
     for (const SurfaceBinding& b : world_.bindings_)
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
@@ -44,14 +44,14 @@ static bool needsNoPoints(const BoundKernel& k) {
 
 bool RowShading::takes(const SurfaceBinding& b) const {
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
-        if (*k && !(blocks_.takes(*k) && needsNoPoints(*k))) return false;
+        if (*k && !(vertexLight_.takes(*k) && needsNoPoints(*k))) return false;
     return b.surfaceS && b.areaLight < 0 && !b.moveS && !b.displacementS && !b.atmosphere.shader && b.lightOutputs.empty() &&
            b.aside.empty() && !b.matte && b.surface && !b.surface->moving;
 }
 
 bool RowShading::shade(BatchContext& c, Sched& sched) {
     if (!segmentEvents_.events.empty() || photons_.photonTrace() || !gathers_.gathered.empty() ||
-        !accumulator_.traceSums.empty() || !blocks_.takesRays(c))
+        !accumulator_.traceSums.empty() || !vertexLight_.takesRays(c))
         return false;
     // Rays with "falloff", that gather photons of maps, or whose call requests distance and normal of the hit, need the point.
     for (const PathRay& r : c.rays)
@@ -66,7 +66,7 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
         transparency_.tellClear(c);
     }
     store_.keepIndirect(c);
-    if (!blocks_.run(c, sched)) {
+    if (!vertexLight_.run(c, sched)) {
         c.emits.clear();
         c.arena.clear();
         c.emitted = 0;

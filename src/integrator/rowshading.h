@@ -8,7 +8,7 @@ namespace alpenglow::integrator {
 
 class Accumulator;
 class AmbientLight;
-class BlockVertices;
+class VertexLight;
 class CameraOutputs;
 class SegmentEvents;
 class GatherCalls;
@@ -41,7 +41,7 @@ private:
 
     Accumulator& accumulator_;
     AmbientLight& ambient_;
-    BlockVertices& blocks_;
+    VertexLight& vertexLight_;
     CameraOutputs& cameraOutputs_;
     SegmentEvents& segmentEvents_;
     GatherCalls& gathers_;

@@ -9,7 +9,7 @@ class Accumulator;
 class AmbientLight;
 class Atmosphere;
 class BatchPool;
-class BlockVertices;
+class VertexLight;
 struct Context;
 class CameraOutputs;
 class DepthRays;
@@ -41,7 +41,6 @@ class SubsurfaceWalks;
 class SurfacePoints;
 class SurfaceShading;
 class Transparency;
-class VertexLight;
 class WaitingKernels;
 
 struct StageSet {
@@ -70,7 +69,6 @@ struct StageSet {
     BatchPool& batches;
     KernelInputs& inputs;
     Displacement& displacement;
-    BlockVertices& blocks;
     CameraOutputs& cameraOutputs;
     SurfaceShading& shading;
     RowShading& rowShading;

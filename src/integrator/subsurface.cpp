@@ -5,7 +5,6 @@
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
-#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/displacement.h"
 #include "integrator/intersector.h"
@@ -25,7 +24,7 @@
 namespace alpenglow::integrator {
 
 Walks::Walks(const StageSet& s, BatchContext& c, std::span<const WalkAsked> asked, std::span<const SubsurfaceMedium> below)
-    : Stage(s.context), c_(c), asked_(asked), below_(below), accumulator_(s.accumulator), batches_(s.batches), blocks_(s.blocks),
+    : Stage(s.context), c_(c), asked_(asked), below_(below), accumulator_(s.accumulator), batches_(s.batches),
       displacement_(s.displacement), intersector_(s.intersector), inputs_(s.inputs), lightKernels_(s.lightKernels),
       litSurfaces_(s.litSurfaces), photons_(s.photons), store_(s.store), requests_(s.requests), shadows_(s.shadows),
       subsurface_(s.subsurface), vertexLight_(s.vertexLight) {}
@@ -299,7 +298,7 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     settleAt(*c, exits);
     std::vector<float> indirect;
     for (const Exit& x : exits) indirect.push_back(asked_[size_t(x.asked)].indirect);
-    blocks_.runExits(*c, indirect, sched);
+    vertexLight_.runExits(*c, indirect, sched);
     skies(*c, sched);
     shadows_.flush(sched);
     batches_.giveBack(std::move(c));

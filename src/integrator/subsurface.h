@@ -6,7 +6,7 @@ namespace alpenglow::integrator {
 
 class Accumulator;
 class BatchPool;
-class BlockVertices;
+class VertexLight;
 class Displacement;
 class Intersector;
 class KernelInputs;
@@ -16,7 +16,6 @@ class PhotonStage;
 class RayStore;
 class Requests;
 class ShadowRays;
-class VertexLight;
 
 /// The walks that a batch has requested, and their exits: points that gather light as diffuse() does.
 class Walks final : Stage {
@@ -74,7 +73,6 @@ private:
 
     Accumulator& accumulator_;
     BatchPool& batches_;
-    BlockVertices& blocks_;
     Displacement& displacement_;
     Intersector& intersector_;
     KernelInputs& inputs_;

@@ -5,7 +5,6 @@
 #include "integrator/accumulator.h"
 #include "integrator/ambientlight.h"
 #include "integrator/atmosphere.h"
-#include "integrator/blockvertices.h"
 #include "integrator/cameraoutputs.h"
 #include "integrator/context.h"
 #include "integrator/displacement.h"
@@ -28,7 +27,7 @@
 namespace alpenglow::integrator {
 
 SurfaceShading::SurfaceShading(const StageSet& s)
-    : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), atmosphere_(s.atmosphere), blocks_(s.blocks),
+    : Stage(s.context), accumulator_(s.accumulator), ambient_(s.ambient), atmosphere_(s.atmosphere),
       cameraOutputs_(s.cameraOutputs), displacement_(s.displacement), gathers_(s.gathers), inputs_(s.inputs),
       lightOutputs_(s.lightOutputs), paths_(s.paths), photons_(s.photons), store_(s.store), requests_(s.requests),
       shadows_(s.shadows), transparency_(s.transparency), vertexLight_(s.vertexLight), waitingKernels_(s.waitingKernels) {}
@@ -161,10 +160,10 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
         atmosphere_.atmosphereOfBatch(*c, 0, n, media || !c->emits.empty() || paths_.automaton);
         atmosphere_.scaleRequests(*c);
     }
-    if (aside.empty() && blocks_.takes(*c)) {
+    if (aside.empty() && vertexLight_.takes(*c)) {
         c->opaque = !photons_.photonTrace() && isOpaque(*c->batch); // those see the opacity of their shading models
         if (!c->opaque && rules_.pickOne) transparency_.tellClear(*c);
-        if (blocks_.run(*c, sched)) {
+        if (vertexLight_.run(*c, sched)) {
             counters_.inRows += uint64_t(n);
             requests_.requestPairs(*c, nullptr, sched, false);
             if (!ambient_.asked.empty()) ambient_.gather(*c);

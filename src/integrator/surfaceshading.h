@@ -9,7 +9,7 @@ namespace alpenglow::integrator {
 class Accumulator;
 class AmbientLight;
 class Atmosphere;
-class BlockVertices;
+class VertexLight;
 class CameraOutputs;
 class Displacement;
 class GatherCalls;
@@ -22,7 +22,6 @@ class Requests;
 class ShadowRays;
 struct StageSet;
 class Transparency;
-class VertexLight;
 class WaitingKernels;
 
 class SurfaceShading final : Stage {
@@ -42,7 +41,6 @@ private:
     Accumulator& accumulator_;
     AmbientLight& ambient_;
     Atmosphere& atmosphere_;
-    BlockVertices& blocks_;
     CameraOutputs& cameraOutputs_;
     Displacement& displacement_;
     GatherCalls& gathers_;

@@ -1,19 +1,38 @@
 #include "integrator/vertexblocks.h"
 #include "base/numberlanes.h"
+#include "integrator/lightpathstates.h"
+#include "integrator/raystore.h"
+#include "integrator/stageset.h"
+#include "integrator/surfacepoints.h"
 #include <algorithm>
 
 namespace alpenglow::integrator {
 
-VertexBlocks::VertexBlocks() { std::fill_n(whole_, kBlock, 1.f); }
+VertexBlocks::VertexBlocks(const StageSet& s) : Stage(s.context), paths_(s.paths), store_(s.store), surfaces_(s.surfaces) {
+    std::fill_n(whole, kBlock, 1.f);
+}
+
+VertexStage::VertexStage(const StageSet& s, const VertexStages& v) : Stage(s.context), v_(v.blocks), stages_(lanes::stages()) {}
+
+const PathSample& VertexBlocks::sampleOf(const RayBlock& of, int lane) const {
+    const uint64_t at = uint64_t(of.sample[1][lane]) << 32 | of.sample[0][lane];
+    return at ? *reinterpret_cast<const PathSample*>(at) : store_.noSample;
+}
+
+float VertexBlocks::indirectOf(const Site& s, size_t point) const {
+    const LobeVertex* const r = s.requestAt(point);
+    if (s.direct || (s.lighting && s.diffuse && !apart.empty() && (apart[point / kBlock] >> point % kBlock & 1))) return 0;
+    return r ? r->indirect : indirect.empty() ? 1 : indirect[point];
+}
 
 std::span<LobeBlock*> VertexBlocks::lobesOf(size_t b) {
     block_.clear();
-    for (size_t k = 0; k < count_; ++k) block_.push_back(&sites_[k].lobes[b]);
+    for (size_t k = 0; k < count; ++k) block_.push_back(&sites[k].lobes[b]);
     return block_;
 }
 
 void VertexBlocks::beginNumbers(size_t b, render::NumberBlock& n) const {
-    const VertexBlock& v = vertices_[b];
+    const VertexBlock& v = vertices[b];
     std::copy_n(v.low, kBlock, n.low);
     std::copy_n(v.high, kBlock, n.high);
     std::copy_n(v.index, kBlock, n.index);
@@ -22,13 +41,40 @@ void VertexBlocks::beginNumbers(size_t b, render::NumberBlock& n) const {
 }
 
 void VertexBlocks::drawNumbers(uint32_t stream, std::vector<render::NumberBlock>& to, bool ofLights) const {
-    to.resize(blocks_);
-    for (size_t b = 0; b < blocks_; ++b) {
+    to.resize(blocks);
+    for (size_t b = 0; b < blocks; ++b) {
         beginNumbers(b, to[b]);
-        if (ofLights) std::copy_n(vertices_[b].lightVertex, kBlock, to[b].vertex);
+        if (ofLights) std::copy_n(vertices[b].lightVertex, kBlock, to[b].vertex);
         std::fill_n(to[b].stream, kBlock, stream);
     }
     render::drawBlocks(to);
+}
+
+/// Origin of a ray of a lobe in direction w.
+Vec3 VertexBlocks::originOf(const Site& s, size_t point, const Vec3& w) const {
+    const VertexBlock& v = vertices[point / kBlock];
+    const size_t i = point % kBlock;
+    const Vec3 P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
+    if (!s.options.empty()) {
+        const RayOptions& o = s.options[point];
+        const Vec3 at = o.elsewhere ? o.from : P;
+        if (o.bias >= 0) return at + w * o.bias;
+        if (o.elsewhere) return at + w * geometry::roundingError(at);
+    }
+    if (moved) return surfaces_.leave(*moved, point, w);
+    return v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, n, v.error[i], w);
+}
+
+/// RayExtra::share of the continuing ray.
+int32_t VertexBlocks::shareOf(const Site& s, size_t point, const PathRay& r) const {
+    if (waits) return -1;
+    const LobeVertex* const request = s.requestAt(point);
+    return request && request->share >= 0 ? request->share : store_.extraOf(r).share;
+}
+
+uint16_t VertexBlocks::pathOf(const Site& s, bool delta, size_t point, const Vec3& w, const BatchContext& c) const {
+    if (waits || !paths_.automaton) return 0;
+    return paths_.atLobe(*s.kind, s.raysAt(point), delta, c.points[point], c.rays[point], w);
 }
 
 } // namespace alpenglow::integrator

@@ -1,77 +1,127 @@
-// The vertices of a batch in blocks of 16, and what the stages over them (blockvertices.h) hand on to each other.
+// The vertices of a batch in blocks of 16 points, in columns, and what the stages over them hand on to each other (vertexlight.h
+// lists the stages).
 #pragma once
 #include "integrator/blocklobes.h"
+#include "integrator/context.h"
 #include "integrator/lastskies.h"
 #include "integrator/raywords.h"
-#include "integrator/vertex.h"
+#include "lanes/stages.h"
 #include <map>
 
 namespace alpenglow::integrator {
 
-class VertexBlocks {
-protected:
+class LightPathStates;
+class RayStore;
+class SurfacePoints;
+
+struct VertexBlocks final : Stage {
     using Site = BlockLobes; ///< a call site of the kernel
-    VertexBlocks();
+    explicit VertexBlocks(const StageSet&);
+    /// The lobes of a block, one entry for each site.
     std::span<LobeBlock*> lobesOf(size_t block);
     /// The camera sample of a ray.
-    const PathSample& sampleOf(const RayBlock& rays, int lane) const {
-        const uint64_t at = uint64_t(rays.sample[1][lane]) << 32 | rays.sample[0][lane];
-        return at ? *reinterpret_cast<const PathSample*>(at) : *noSample_;
-    }
+    const PathSample& sampleOf(const RayBlock&, int lane) const;
     /// Factor of the light of surfaces that the ray of a lobe carries, without the energy rule.
-    float indirectOf(const Site& s, size_t point) const {
-        const LobeVertex* const r = s.requestAt(point);
-        if (s.direct || (s.lighting && s.diffuse && !apart_.empty() && (apart_[point / kBlock] >> point % kBlock & 1))) return 0;
-        return r ? r->indirect : indirect_.empty() ? 1 : indirect_[point];
-    }
+    float indirectOf(const Site&, size_t point) const;
     /// Sets the keys of the points of a block; the stream is still to be set.
     void beginNumbers(size_t block, render::NumberBlock&) const;
     /// Draws the random numbers of a stream (NumberBlock) at all points.
     void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true) const;
+    /// Origin of a ray of a lobe in direction w.
+    Vec3 originOf(const Site&, size_t point, const Vec3& w) const;
+    /// RayExtra::share of light that a lobe reflects at the hit of a ray.
+    int32_t shareOf(const Site&, size_t point, const PathRay&) const;
+    /// PathRay::path of light that a lobe scatters toward w.
+    uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
+    /// Index of a point in LitSurfaces::values; -1: none.
+    int toldAt(size_t point) const { return told.empty() ? -1 : told[point]; }
+    uint32_t numberOf(const BoundLight& l) const { return uint32_t(&l - world_.lights_.data()); }
 
-    const PathSample* noSample_ = nullptr;       ///< for rays without a camera sample
-    const BatchContext* moved_ = nullptr;        ///< the batch, if its shader has moved points
-    size_t blocks_ = 0, points_ = 0, count_ = 0; ///< count_: requesting sites in sites_
-    bool waits_ = false;                         ///< the kernel waits for its results
-    std::vector<uint32_t> before_;               ///< if it waits, by point: earlier ray requests
-    std::span<const float> indirect_;            ///< at exits of walks, by point: factor of the light of rays
-    std::vector<Lanes> apart_;                   ///< by block: points of indirectdiffuse(); empty: none
-    std::vector<VertexBlock> vertices_;
-    std::vector<RayBlock> rays_;                 ///< incoming rays, then the next rays
-    std::vector<Site> sites_;                    ///< the first `count_`, in the order of the calls
-    std::vector<LobeBlock*> block_;              ///< lobesOf()
-    std::map<int, std::vector<uint32_t>> loops_; ///< by call site that is called several times at a point: calls so far
-    bool repeats_ = false;                       ///< some call site is called several times at a point
-    bool sendsSeveral_ = false;                  ///< the kernel waits for several rays of a call
-    std::vector<Lanes> lit_;                     ///< by block: points that sample lights
-    int onlySite_ = -1;                          ///< the only site that samples the light; -1: all
-    uint32_t draw_ = 0;                          ///< which sample of the light, if lobes take several
-    bool several_ = false;                       ///< some lobe takes several samples of each light
-    bool checksHits_ = false;                    ///< lobes differ in the samples of the light that their rays could hit
-    std::vector<int> told_;                      ///< by point: index in LitSurfaces::values; empty: no light queries surfaces
-    std::vector<uint64_t> given_;                ///< by point: the light whose outputs were kept last, and which samples
-    alignas(64) Row draws_;                      ///< by lane: samples of the light that a lobe takes
-    std::vector<LightBlock> lights_;
-    std::vector<LastRay> ends_;
-    std::vector<render::NumberBlock> pairs_, choices_;
-    std::vector<ShadePoint> queries_;
-    std::vector<BlockQuery> asked_;
-    std::vector<LightValue> values_;
-    std::vector<int32_t> queryAt_;    ///< by point: index in values_; -1, or empty: lights_ holds all
-    std::vector<size_t> litBlocks_;   ///< blocks with points that sample lights
-    std::vector<float> lamp_;         ///< LightRows of these blocks
-    std::vector<BlockPlaced> placed_; ///< by litBlocks_
-    ScatterBlock next_{};
-    std::vector<uint32_t> keys_; ///< by site, its number
-    alignas(64) Row survived_;   ///< if the kernel waits: probability with which its ray was sent
-    Lanes idle_ = 0;             ///< points of a block whose ray carries no light and only reports what it hits
-    uint64_t ignored_ = 0;       ///< rays that are not sent because their "weight" is 0
-    uint32_t turn_ = 0;          ///< if all lobes are followed: which ray of each lobe
-    ShadowBlock shadow_{};
-    int32_t sent_[kBlock];  ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
-    alignas(64) Row whole_; ///< all ones
-    alignas(64) float value_[kValueRows][kBlock] = {};
-    alignas(64) float drawn_[kDrawnRows][kBlock] = {};
+    // By VertexLoading and the stages that read requests.
+    const BatchContext* moved = nullptr;      ///< the batch, if its shader has moved points
+    size_t blocks = 0, points = 0, count = 0; ///< count: requesting sites in `sites`
+    bool waits = false;                       ///< the kernel waits for its results
+    bool single = false;                      ///< requests were made one by one (singlerequests.h)
+    std::vector<uint32_t> before;             ///< if it waits, by point: earlier ray requests
+    std::span<const float> indirect;          ///< at exits of walks, by point: factor of the light of rays
+    std::vector<Lanes> apart;                 ///< by block: points of indirectdiffuse(); empty: none
+    std::vector<VertexBlock> vertices;
+    std::vector<RayBlock> rays;                 ///< incoming rays, then the next rays
+    std::vector<Site> sites;                    ///< the first `count`, in the order of the calls
+    std::map<int, std::vector<uint32_t>> loops; ///< by call site that is called several times at a point: calls so far
+    bool repeats = false;                       ///< some call site is called several times at a point
+    bool sendsSeveral = false;                  ///< the kernel waits for several rays of a call
+    uint64_t ignored = 0;                       ///< rays that are not sent because their "weight" is 0
+    // By LightSampling, for one light.
+    std::vector<Lanes> lit;  ///< by block: points that sample it
+    int onlySite = -1;       ///< the only site that samples it; -1: all
+    uint32_t draw = 0;       ///< which sample, if lobes take several
+    bool several = false;    ///< some lobe takes several samples of each light
+    bool checksHits = false; ///< lobes differ in the samples that their rays could hit
+    std::vector<int> told;   ///< toldAt(); empty: no light queries surfaces
+    std::vector<LightBlock> lights;
+    std::vector<ShadePoint> queries;
+    std::vector<BlockQuery> asked;  ///< by query
+    std::vector<LightValue> values; ///< by query
+    std::vector<int32_t> queryAt;   ///< by point: index in `values`; -1, or empty: `lights` holds all
+    std::vector<size_t> litBlocks;  ///< blocks with points that sample it
+    std::vector<render::NumberBlock> pairs, choices;
+    // By Connection.
+    ShadowBlock shadow{};
+    int32_t sent[kBlock]; ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
+    // By ScatterRays, for one block.
+    ScatterBlock next{};
+    alignas(64) Row survived; ///< if the kernel waits: probability with which its ray was sent
+    Lanes idle = 0;           ///< points whose ray carries no light and only reports what it hits
+    uint32_t turn = 0;        ///< if all lobes are followed: which ray of each lobe
+    // Scratch of all.
+    alignas(64) Row whole; ///< all ones
+    alignas(64) float value[kValueRows][kBlock] = {};
+    alignas(64) float drawn[kDrawnRows][kBlock] = {};
+
+private:
+    std::vector<LobeBlock*> block_; ///< lobesOf()
+    const LightPathStates& paths_;
+    RayStore& store_;
+    SurfacePoints& surfaces_;
+};
+
+class Connection;
+class GuideScatter;
+class LastVertices;
+class LightSampling;
+class LobeRequests;
+class LobeSelection;
+class PhotonFlight;
+class PhotonGather;
+class ScatterRays;
+class SingleRequests;
+class VertexLoading;
+
+/// The stages over vertices in blocks, by reference. Each takes those that it calls.
+struct VertexStages {
+    VertexBlocks& blocks;
+    VertexLoading& loading;
+    LobeRequests& requests;
+    SingleRequests& single;
+    LobeSelection& selection;
+    LightSampling& lights;
+    Connection& connection;
+    LastVertices& last;
+    GuideScatter& guide;
+    PhotonGather& gather;
+    PhotonFlight& flight;
+    ScatterRays& scatter;
+};
+
+/// Base of these stages.
+class VertexStage : protected Stage {
+protected:
+    using Site = BlockLobes;
+    VertexStage(const StageSet&, const VertexStages&);
+    ~VertexStage() = default;
+    VertexBlocks& v_;
+    const lanes::Stages& stages_;
 };
 
 } // namespace alpenglow::integrator

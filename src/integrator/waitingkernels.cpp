@@ -2,7 +2,6 @@
 #include "integrator/waitingkernels.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
-#include "integrator/blockvertices.h"
 #include "integrator/context.h"
 #include "integrator/gathercalls.h"
 #include "integrator/requests.h"
@@ -17,7 +16,7 @@ namespace alpenglow::integrator {
 
 WaitingKernels::WaitingKernels(const StageSet& s)
     : Stage(s.context), accumulator(s.accumulator), gathers(s.gathers), requests(s.requests), shadows(s.shadows),
-      shading(s.shading), batches_(s.batches), blocks_(s.blocks), vertexLight_(s.vertexLight) {}
+      shading(s.shading), batches_(s.batches), vertexLight_(s.vertexLight) {}
 
 void WaitingKernels::start(const std::shared_ptr<BatchContext>& c, Sched& sched) {
     const auto& kernel = *c->bound->kernel;
@@ -47,7 +46,7 @@ void WaitingKernels::follow(Sched& sched) {
         const std::shared_ptr<BatchContext> c = strips[first]->context();
         for (end = first; end < strips.size() && strips[end]->context() == c;) ++end;
         const auto together = std::span(strips).subspan(first, end - first);
-        if (!blocks_.run(*c, together, sched)) {
+        if (!vertexLight_.run(*c, together, sched)) {
             for (KernelStrip* s : together) s->ask(sched);
             vertexLight_.gather(*c, sched);
         }

@@ -8,14 +8,13 @@ namespace alpenglow::integrator {
 
 class Accumulator;
 class BatchPool;
-class BlockVertices;
+class VertexLight;
 class GatherCalls;
 class KernelStrip;
 class Requests;
 class ShadowRays;
 struct StageSet;
 class SurfaceShading;
-class VertexLight;
 
 class WaitingKernels final : Stage {
 public:
@@ -44,9 +43,8 @@ public:
 private:
     std::vector<StripMemory> memory_; ///< of finished strips
     BatchPool& batches_;
-    BlockVertices& blocks_;
-    std::unordered_map<const rsl::CompiledKernel*, size_t> frameOf_; ///< bytes of a strip's frame, by kernel
     VertexLight& vertexLight_;
+    std::unordered_map<const rsl::CompiledKernel*, size_t> frameOf_; ///< bytes of a strip's frame, by kernel
 };
 
 } // namespace alpenglow::integrator

@@ -1,31 +1,31 @@
-// Light-directed sampling (lightdirected.h) for vertices in blocks on surfaces in scattering media.
-#include "integrator/blockvertices.h"
+// Light-directed sampling (lightdirected.h) at vertices on surfaces in scattering media.
+#include "integrator/lobeselection.h"
 #include "integrator/medium.h"
 #include <bit>
 
 namespace alpenglow::integrator {
 
 /// Selects lights for light-directed sampling, and the lobes that use it.
-void BlockVertices::lightDirections(const BatchContext& c) {
-    for (size_t k = 0; k < count_; ++k) sites_[k].beside.clear();
-    if (waits_ || c.between || !mediumEvents_.surfacesAim()) return; // rays of waiting kernels follow the lobe's density alone
-    for (size_t b = 0; b < blocks_; ++b) {
+void LobeSelection::lightDirections(const BatchContext& c) {
+    for (size_t k = 0; k < v_.count; ++k) v_.sites[k].beside.clear();
+    if (v_.waits || c.between || !mediumEvents_.surfacesAim()) return; // rays of waiting kernels follow the lobe's density alone
+    for (size_t b = 0; b < v_.blocks; ++b) {
         Lanes some = 0;
-        for (size_t k = 0; k < count_; ++k) some |= sites_[k].spreads(b);
-        for (some &= vertices_[b].points; some; some &= some - 1) {
+        for (size_t k = 0; k < v_.count; ++k) some |= v_.sites[k].spreads(b);
+        for (some &= v_.vertices[b].points; some; some &= some - 1) {
             const int lane = std::countr_zero(some);
             const size_t point = b * kBlock + size_t(lane);
             const LightDirected beside = mediumEvents_.atSurfaceInMedium(c, point);
             if (!(beside.share > 0)) continue;
-            for (size_t k = 0; k < count_; ++k) {
-                if (!(sites_[k].spreads(b) >> lane & 1)) continue;
-                sites_[k].beside.resize(blocks_ * kBlock);
-                sites_[k].beside[point] = beside;
+            for (size_t k = 0; k < v_.count; ++k) {
+                if (!(v_.sites[k].spreads(b) >> lane & 1)) continue;
+                v_.sites[k].beside.resize(v_.blocks * kBlock);
+                v_.sites[k].beside[point] = beside;
             }
         }
     }
-    for (size_t k = 0; k < count_; ++k)
-        for (size_t b = 0; b < blocks_ && !sites_[k].beside.empty(); ++b) sites_[k].weighLightDirected(b, value_);
+    for (size_t k = 0; k < v_.count; ++k)
+        for (size_t b = 0; b < v_.blocks && !v_.sites[k].beside.empty(); ++b) v_.sites[k].weighLightDirected(b, v_.value);
 }
 
 Lanes BlockLobes::spreads(size_t b) const {

@@ -1,40 +1,41 @@
-#include "integrator/blockguide.h"
+#include "integrator/guidescatter.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/mediastacks.h"
+#include "integrator/stageset.h"
 #include <algorithm>
 #include <bit>
 #include <numeric>
 
 namespace alpenglow::integrator {
 
-BlockVertices::Guided::Guided(BlockVertices& b, GuideRays& g) : b_(b), guide_(g) {}
+GuideScatter::GuideScatter(const StageSet& s, const VertexStages& v) : VertexStage(s, v), guide_(s.guide), media_(s.media) {}
 
-void BlockVertices::Guided::mark(size_t block, const BatchContext& c) {
-    VertexBlock& v = b_.vertices_[block];
+void GuideScatter::mark(size_t block, const BatchContext& c) {
+    VertexBlock& v = v_.vertices[block];
     v.guided = 0;
     if (!on()) return;
-    for (size_t i = block * kBlock; i < std::min(b_.points_, (block + 1) * kBlock); ++i)
+    for (size_t i = block * kBlock; i < std::min(v_.points, (block + 1) * kBlock); ++i)
         v.guided |= Lanes(c.rays[i].guided()) << i % kBlock;
 }
 
-BlockVertices::Guided::Point BlockVertices::Guided::pointOf(size_t block, int i, const BatchContext& c) const {
-    const VertexBlock& v = b_.vertices_[block];
+GuideScatter::Point GuideScatter::pointOf(size_t block, int i, const BatchContext& c) const {
+    const VertexBlock& v = v_.vertices[block];
     Point found;
     float most = 0;
     const auto weightOf = [&](const LobeBlock& l) { return Color(l.weight[0][i], l.weight[1][i], l.weight[2][i]); };
-    for (size_t k = 0; k < b_.count_; ++k) {
-        const LobeBlock& l = b_.sites_[k].lobes[block];
+    for (size_t k = 0; k < v_.count; ++k) {
+        const LobeBlock& l = v_.sites[k].lobes[block];
         if (!(l.lights >> i & 1) || !(l.chosen[i] > 0)) continue;
-        const Site& s = b_.sites_[k];
+        const Site& s = v_.sites[k];
         const size_t point = block * kBlock + size_t(i);
         const RayOptions* const options = s.options.empty() ? nullptr : &s.options[point];
-        if (!(b_.indirectOf(s, point) > 0) || s.raysAt(point).gathersPhotons) continue;
+        if (!(v_.indirectOf(s, point) > 0) || s.raysAt(point).gathersPhotons) continue;
         if (options && (options->fade.fades() || options->base > 0)) continue;
         const float gives = luminance(absolute(weightOf(l))) * l.lobe[kRowAlbedo][i];
         if (gives > most) found.site = int(k), most = gives;
     }
     if (found.site < 0) return found;
-    const LobeBlock& l = b_.sites_[size_t(found.site)].lobes[block];
+    const LobeBlock& l = v_.sites[size_t(found.site)].lobes[block];
     const PathRay& from = c.rays[block * kBlock + size_t(i)];
     const float brings = luminance(absolute(from.weight * weightOf(l))) * l.lobe[kRowAlbedo][i];
     const Vec3 P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
@@ -42,11 +43,11 @@ BlockVertices::Guided::Point BlockVertices::Guided::pointOf(size_t block, int i,
     return found;
 }
 
-void BlockVertices::Guided::run(BatchContext& c, Sched& sched) {
-    if (!on() || b_.waits_ || c.between) return;
-    points_.assign(b_.blocks_ * kBlock, {});
-    for (size_t block = 0; block < b_.blocks_; ++block) {
-        const VertexBlock& v = b_.vertices_[block];
+void GuideScatter::run(BatchContext& c, Sched& sched) {
+    if (!on() || v_.waits || c.between) return;
+    points_.assign(v_.blocks * kBlock, {});
+    for (size_t block = 0; block < v_.blocks; ++block) {
+        const VertexBlock& v = v_.vertices[block];
         Lanes drawn = 0;
         for (Lanes left = v.points & ~v.guided & ~(v.deep[0] & v.deep[1]); left; left &= left - 1) {
             const int i = std::countr_zero(left);
@@ -57,7 +58,7 @@ void BlockVertices::Guided::run(BatchContext& c, Sched& sched) {
             for (int q = 0; q < 3; ++q) w_[q][i] = w[q];
             drawn |= 1u << i;
         }
-        for (size_t k = 0; k < b_.count_ && drawn; ++k) {
+        for (size_t k = 0; k < v_.count && drawn; ++k) {
             Lanes of = 0;
             for (Lanes left = drawn; left; left &= left - 1)
                 of |= Lanes(points_[block * kBlock + size_t(std::countr_zero(left))].site == int(k)) << std::countr_zero(left);
@@ -66,9 +67,9 @@ void BlockVertices::Guided::run(BatchContext& c, Sched& sched) {
     }
 }
 
-void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext& c, Sched& sched) {
-    const VertexBlock& v = b_.vertices_[block];
-    const Site& s = b_.sites_[size_t(site)];
+void GuideScatter::send(size_t block, int site, Lanes of, BatchContext& c, Sched& sched) {
+    const VertexBlock& v = v_.vertices[block];
+    const Site& s = v_.sites[size_t(site)];
     const LobeBlock& l = s.lobes[block];
     alignas(64) float value[kValueRows][kBlock];
     s.lanes->evaluate(l.lobe[0], of, w_[0], value[0]);
@@ -83,35 +84,35 @@ void BlockVertices::Guided::send(size_t block, int site, Lanes of, BatchContext&
         const LobeValue f{
             {value[kRowColour][i], value[kRowColour + 1][i], value[kRowColour + 2][i]}, value[kRowFcos][i], value[kRowPdf][i]};
         const RayOptions options = s.options.empty() ? RayOptions() : s.options[at];
-        const uint16_t path = from.path ? b_.pathOf(s, false, at, w, c) : uint16_t(0);
+        const uint16_t path = from.path ? v_.pathOf(s, false, at, w, c) : uint16_t(0);
         guide_.send({from,
                      c.targets[at],
                      P,
                      {l.weight[0][i], l.weight[1][i], l.weight[2][i]},
-                     (s.lighting ? v.energyScale[i] : 1) * b_.indirectOf(s, at),
+                     (s.lighting ? v.energyScale[i] : 1) * v_.indirectOf(s, at),
                      l.chosen[i],
                      l.lobe[kRowSpread][i],
                      &s.raysAt(at),
-                     b_.shareOf(s, at, from),
+                     v_.shareOf(s, at, from),
                      options.importance,
                      options.maxDistance},
-                    points_[at].aim, w, f, b_.originOf(s, at, w), path,
-                    b_.world_.media_.empty() ? from.media : b_.media_.towards(c, int(at), w), sched);
+                    points_[at].aim, w, f, v_.originOf(s, at, w), path,
+                    world_.media_.empty() ? from.media : media_.towards(c, int(at), w), sched);
     }
 }
 
-void BlockVertices::Guided::keep(size_t block, const BatchContext& c) {
+void GuideScatter::keep(size_t block, const BatchContext& c) {
     if (!on()) return;
-    RayBlock& r = b_.rays_[block];
-    for (Lanes left = b_.next_.goes; left; left &= left - 1) {
+    RayBlock& r = v_.rays[block];
+    for (Lanes left = v_.next.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         const size_t at = block * kBlock + size_t(i);
         uint8_t trail = 0;
-        if (b_.next_.single >> i & 1) {
-            if (b_.waits_) continue;
+        if (v_.next.single >> i & 1) {
+            if (v_.waits) continue;
             trail = GuideRays::trailBehindMirror(c.rays[at]);
             r.pdf[i] = guide_.pdfBehindMirror(c.rays[at]);
-        } else if (!b_.waits_ && !c.between && points_[at].site == b_.next_.site[i]) {
+        } else if (!v_.waits && !c.between && points_[at].site == v_.next.site[i]) {
             trail = points_[at].aim.trail();
         }
         r.flags[i] |= uint32_t(trail) << 24;

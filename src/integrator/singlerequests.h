@@ -1,23 +1,19 @@
-// Requests that were made point by point (Requests::lobes), for vertices in blocks (blockvertices.h): calls whose arguments stage
-// `request` cannot read in rows. Their lobes become rows; what only such calls have stays in LobeVertex.
+// Requests that were made one by one (Requests::lobes): of calls whose arguments LobeRequests cannot read in rows. Their lobes
+// become rows of VertexBlocks::sites; what only such calls have stays in LobeVertex, which BlockLobes::requests names by point.
 #pragma once
-#include "integrator/blockvertices.h"
 #include "integrator/requests.h"
 #include "integrator/unshadowed.h"
+#include "integrator/vertexblocks.h"
 
 namespace alpenglow::integrator {
 
-class BlockVertices::Requested {
+class SingleRequests final : VertexStage {
 public:
-    Requested(BlockVertices&, const StageSet&);
-    /// BlockVertices::runRequests().
-    void run(BatchContext&, Sched&);
+    SingleRequests(const StageSet&, const VertexStages&);
     /// Fills the blocks with a batch's points and its requests, which it removes.
     void load(BatchContext&);
-    /// The batch has none.
-    void clear() { lobes_.clear(); }
-    bool empty() const { return lobes_.empty(); }
-    /// Draws directions again at points where a lobe had none, for calls that return a mean over directions. Sets idle_.
+    /// Draws directions again at points where a lobe had none, for calls that return a mean over directions. Sets
+    /// VertexBlocks::idle.
     void drawAgain(const Site&, size_t block, Lanes);
     /// Before the rays of a block are sent: removes those that carry only emission and miss all emitters, and adds the light that
     /// they would see without occlusion to the sums of their calls.
@@ -32,11 +28,13 @@ private:
     void readOptions(Site&);
     bool intersectsEmitter(const LobeVertex&, size_t point, const Vec3& w) const;
     Color throughputOf(int lane) const;
-    BlockVertices& b_;
-    const WorldImpl& world_;
-    Requests& requests_;
-    UnshadowedLight unshadowed_;
     std::vector<LobeVertex> lobes_; ///< taken from Requests::lobes
+    LobeLanesList lanes_;
+    UnshadowedLight unshadowed_;
+    Accumulator& accumulator_;
+    PhotonFlight& flight_;
+    VertexLoading& loading_;
+    Requests& requests_;
 };
 
 } // namespace alpenglow::integrator

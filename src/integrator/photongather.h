@@ -1,13 +1,19 @@
-// Photons for vertices in blocks of 16 (blockvertices.h): light of the photons of a pass that paths gather.
+// Light of the photons of a pass that paths gather, and lobes that photons treat as mirrors. Reads VertexBlocks::sites; writes
+// LobeBlock::narrow and left, and light to the accumulator.
 #pragma once
-#include "integrator/blockvertices.h"
+#include "integrator/batchcontext.h"
+#include "integrator/vertexblocks.h"
 #include "photonmap/photongrid.h"
 
 namespace alpenglow::integrator {
 
-class BlockVertices::Photons {
+class Accumulator;
+class GuideRays;
+class PhotonStage;
+
+class PhotonGather final : VertexStage {
 public:
-    Photons(BlockVertices&, const StageSet&);
+    PhotonGather(const StageSet&, const VertexStages&);
     /// After prepare(): finds the points that gather photons, and sets LobeBlock::narrow and left.
     void mark(BatchContext&);
     /// Points whose lobe must not sample a light, because photons carry its light to them.
@@ -31,9 +37,11 @@ private:
     uint8_t trailBehind(const Site&, size_t point, const BatchContext&) const;
     void findNear(const photonmap::PhotonGrid&, size_t point, const BatchContext&);
     Color givenBack(const Site&, size_t point) const;
-    BlockVertices& b_;
+    Accumulator& accumulator_;
     GuideRays& guide_;
+    const LightPathStates& paths_;
     PhotonStage& stage_;
+    SurfacePoints& surfaces_;
     std::vector<Lanes> gathers_; ///< by block: points that gather photons; empty: none does
     std::vector<Near> near_;     ///< photons near a point
 };

@@ -3,13 +3,14 @@
 // photon that such a lobe sends on carries the value of all narrow lobes of its point, with the shader run from where the photon
 // goes; the lobes as the photon found them only sample the direction, with the density of all of them.
 #include "integrator/batchpool.h"
-#include "integrator/blockflight.h"
-#include "integrator/blockphotons.h"
-#include "integrator/blockrequests.h"
 #include "integrator/intersector.h"
 #include "integrator/kernelinputs.h"
+#include "integrator/lobeselection.h"
+#include "integrator/photonflight.h"
+#include "integrator/photongather.h"
 #include "integrator/photonstage.h"
 #include "integrator/shadowrays.h"
+#include "integrator/singlerequests.h"
 #include "integrator/transparency.h"
 #include "integrator/vertexlight.h"
 #include <algorithm>
@@ -19,30 +20,25 @@
 namespace alpenglow::integrator {
 
 /// Sets back_ for the photons of turned_, and ends those that no path reaches.
-void BlockVertices::Flight::lookBack(const BatchContext& c, Sched& sched) {
+void PhotonFlight::lookBack(const BatchContext& c, Sched& sched) {
     if (turned_.empty()) return;
-    if (!seen_) seen_ = std::make_unique<BlockVertices>(set_);
-    auto seen = b_.batches_.take();
+    if (!seen_) seen_ = std::make_unique<VertexLight>(set_);
+    auto seen = batches_.take();
     shadeBack(*seen, c);
-    seen_->begin(*seen, false);
-    if (!seen_->takes(*seen) || !seen_->loadVertices(*seen) || !seen_->findSites(*seen) || !seen_->request(*seen)) {
-        const size_t settled = set_.shadows.settled.size();
-        set_.requests.requestPairs(*seen, nullptr, sched);
-        set_.shadows.settled.resize(std::min(settled, set_.shadows.settled.size())); // of rays that no longer exist
-        seen_->requested_->load(*seen);
-    }
-    seen_->prepare();
-    seen_->flight_->mark(*seen);
-    back_.assign(b_.points_, Color(0));
-    std::vector<Lanes> turned(b_.blocks_);
+    const size_t settled = set_.shadows.settled.size();
+    seen_->read(*seen, sched);
+    set_.shadows.settled.resize(std::min(settled, set_.shadows.settled.size())); // of rays that no longer exist
+    seen_->stages().flight.mark(*seen);
+    back_.assign(v_.points, Color(0));
+    std::vector<Lanes> turned(v_.blocks);
     for (const Turned& t : turned_) turned[t.point / kBlock] |= 1u << t.point % kBlock;
-    for (size_t b = 0; b < b_.blocks_; ++b)
+    for (size_t b = 0; b < v_.blocks; ++b)
         if (turned[b]) valueBack(b, turned[b], *seen, c);
-    b_.batches_.giveBack(std::move(seen));
+    batches_.giveBack(std::move(seen));
 }
 
 /// Runs the shader over the batch as seen by paths from where the photons go.
-void BlockVertices::Flight::shadeBack(BatchContext& c, const BatchContext& from) {
+void PhotonFlight::shadeBack(BatchContext& c, const BatchContext& from) {
     c.extrasOf = nullptr; // the extras of the rays belong to the batch
     c.binding = from.binding;
     c.bound = from.bound;
@@ -58,10 +54,10 @@ void BlockVertices::Flight::shadeBack(BatchContext& c, const BatchContext& from)
         const Vec3 w(direction[0][i], direction[1][i], direction[2][i]);
         const PathRay& ray = from.rays[t.point];
         accel::Ray way;
-        way.org = b_.originOf(b_.sites_[size_t(t.site)], t.point, w);
+        way.org = v_.originOf(v_.sites[size_t(t.site)], t.point, w);
         way.dir = w;
-        way.time = b_.world_.shutterOf(ray);
-        way.only = b_.photons_.photonTrace()->job->met;
+        way.time = world_.shutterOf(ray);
+        way.only = photons_.photonTrace()->job->met;
         way.sides = accel::Sides::Both;
         way.level = ray.sample->level;
         accel::Hit hit;
@@ -70,22 +66,22 @@ void BlockVertices::Flight::shadeBack(BatchContext& c, const BatchContext& from)
         p.E = p.P - p.I;
         c.rays[t.point].dir = -w;
     }
-    b_.inputs_.fill(c);
+    inputs_.fill(c);
     if (c.displaced) c.batch->tell(*c.displaced->batch);
     c.bound->kernel->run(&c.batch->call());
     c.ran();
 }
 
 /// Whether a lobe that samples lights is lit by the light from which a photon has just arrived.
-bool BlockVertices::Flight::isLit(const Site& s, size_t point, const BatchContext& c) const {
+bool PhotonFlight::isLit(const Site& s, size_t point, const BatchContext& c) const {
     const PathRay& ray = c.rays[point];
     if (ray.bounces > 0 || !(s.lobes[point / kBlock].lights >> point % kBlock & 1)) return true;
-    return b_.world_.bindings_[size_t(c.bindings[point])].lights.contains(
-        b_.photons_.photonTrace()->from[size_t(ray.sample->path)].light);
+    return world_.bindings_[size_t(c.bindings[point])].lights.contains(
+        photons_.photonTrace()->from[size_t(ray.sample->path)].light);
 }
 
 /// Sets back_ for the photons of a block.
-void BlockVertices::Flight::valueBack(size_t b, Lanes turned, const BatchContext& seen, const BatchContext& c) {
+void PhotonFlight::valueBack(size_t b, Lanes turned, const BatchContext& seen, const BatchContext& c) {
     Color sum[kBlock];
     float density[kBlock];
     const Lanes reached = sumBack(b, turned, seen, c, sum);
@@ -99,16 +95,16 @@ void BlockVertices::Flight::valueBack(size_t b, Lanes turned, const BatchContext
 
 /// Value of all narrow lobes of the points, as seen from where the photons go, for light from where they came. Returns the points
 /// that have any.
-Lanes BlockVertices::Flight::sumBack(size_t b, Lanes turned, const BatchContext& seen, const BatchContext& c, Color* sum) {
-    const PhotonTrace& t = *b_.photons_.photonTrace();
+Lanes PhotonFlight::sumBack(size_t b, Lanes turned, const BatchContext& seen, const BatchContext& c, Color* sum) {
+    const PhotonTrace& t = *photons_.photonTrace();
     alignas(64) Row w[3] = {}, value[kValueRows];
     Color albedo[kBlock];
     float energy[kBlock], kept[kBlock];
     std::fill_n(albedo, kBlock, Color(0));
     std::fill_n(sum, kBlock, Color(0));
-    for (size_t k = 0; k < seen_->count_; ++k) {
-        const LobeBlock& l = seen_->sites_[k].lobes[b];
-        for (Lanes left = seen_->sites_[k].lighting ? l.asked & turned : 0; left; left &= left - 1) {
+    for (size_t k = 0; k < seen_->stages().blocks.count; ++k) {
+        const LobeBlock& l = seen_->stages().blocks.sites[k].lobes[b];
+        for (Lanes left = seen_->stages().blocks.sites[k].lighting ? l.asked & turned : 0; left; left &= left - 1) {
             const int i = std::countr_zero(left);
             for (int q = 0; q < 3; ++q) albedo[i][q] += std::fabs(l.weight[q][i]) * l.lobe[kRowAlbedo][i];
         }
@@ -118,19 +114,18 @@ Lanes BlockVertices::Flight::sumBack(size_t b, Lanes turned, const BatchContext&
         const size_t point = b * kBlock + size_t(i);
         const PathRay& ray = c.rays[point];
         kept[i] = ray.bounces == 0 ? t.from[size_t(ray.sample->path)].kept : 1;
-        energy[i] =
-            energyScale(albedo[i], transparency_.clearAt(seen, int(point)), b_.world_.bindings_[size_t(c.bindings[point])]);
+        energy[i] = energyScale(albedo[i], transparency_.clearAt(seen, int(point)), world_.bindings_[size_t(c.bindings[point])]);
         for (int q = 0; q < 3; ++q) w[q][i] = -ray.dir[q];
     }
     Lanes reached = 0;
-    for (size_t k = 0; k < seen_->count_; ++k) {
-        const Site& s = seen_->sites_[k];
+    for (size_t k = 0; k < seen_->stages().blocks.count; ++k) {
+        const Site& s = seen_->stages().blocks.sites[k];
         const LobeBlock& l = s.lobes[b];
         Lanes some = l.asked & l.narrow & turned;
         for (Lanes left = some; left; left &= left - 1) {
             const int i = std::countr_zero(left);
             const size_t point = b * kBlock + size_t(i);
-            if (!seen_->gathered_->mirrors(s, point, seen) || !isLit(s, point, seen)) some &= ~(1u << i);
+            if (!seen_->stages().gather.mirrors(s, point, seen) || !isLit(s, point, seen)) some &= ~(1u << i);
         }
         if (!some) continue;
         reached |= some;
@@ -147,12 +142,12 @@ Lanes BlockVertices::Flight::sumBack(size_t b, Lanes turned, const BatchContext&
 }
 
 /// Density of the directions of photons, over all narrow lobes as they found them.
-void BlockVertices::Flight::densityBack(size_t b, Lanes turned, const BatchContext& c, float* density) {
+void PhotonFlight::densityBack(size_t b, Lanes turned, const BatchContext& c, float* density) {
     const ScatterBlock& next = picked_[b];
     alignas(64) Row value[kValueRows];
     std::fill_n(density, kBlock, 0.f);
-    for (size_t k = 0; k < b_.count_; ++k) {
-        const Site& s = b_.sites_[k];
+    for (size_t k = 0; k < v_.count; ++k) {
+        const Site& s = v_.sites[k];
         const LobeBlock& l = s.lobes[b];
         Lanes some = l.asked & l.narrow & turned;
         for (Lanes left = some; left; left &= left - 1) {
@@ -169,11 +164,11 @@ void BlockVertices::Flight::densityBack(size_t b, Lanes turned, const BatchConte
 }
 
 /// Reflected plus transmitted light must not exceed incident light.
-float BlockVertices::Flight::energyScale(const Color& reflected, const Color& clear, const SurfaceBinding& of) const {
+float PhotonFlight::energyScale(const Color& reflected, const Color& clear, const SurfaceBinding& of) const {
     float scale = 1;
-    for (int k = 0; k < 3 && !b_.world_.settings_.unbiased; ++k)
+    for (int k = 0; k < 3 && !world_.settings_.unbiased; ++k)
         if (reflected[k] + clear[k] > 1 && reflected[k] > 0) scale = std::min(scale, (1 - clear[k]) / reflected[k]);
-    if (scale < 0.999f) b_.vertexLight_.tellScaled(of, maxComponent(reflected) > 1);
+    if (scale < 0.999f) selection_.tellScaled(of, maxComponent(reflected) > 1);
     return scale;
 }
 

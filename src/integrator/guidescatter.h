@@ -1,13 +1,16 @@
-// Guide rays for vertices in blocks of 16 (blockvertices.h).
+// Rays of the caustic guide from vertices, and what MIS needs to know of it at the others (guiderays.h). Reads
+// VertexBlocks::sites after LobeSelection; sends rays.
 #pragma once
-#include "integrator/blockvertices.h"
 #include "integrator/guiderays.h"
+#include "integrator/vertexblocks.h"
 
 namespace alpenglow::integrator {
 
-class BlockVertices::Guided {
+class MediaStacks;
+
+class GuideScatter final : VertexStage {
 public:
-    explicit Guided(BlockVertices&, GuideRays&);
+    GuideScatter(const StageSet&, const VertexStages&);
     bool on() const { return guide_.on(); }
     /// Marks the rays of a block that were aimed by the guide.
     void mark(size_t block, const BatchContext&);
@@ -24,8 +27,8 @@ private:
     };
     Point pointOf(size_t block, int lane, const BatchContext&) const;
     void send(size_t block, int site, Lanes, BatchContext&, Sched&);
-    BlockVertices& b_;
     GuideRays& guide_;
+    MediaStacks& media_;
     std::vector<Point> points_; ///< over all blocks
     alignas(64) Row w_[3];      ///< directions of the guide rays of a block
 };

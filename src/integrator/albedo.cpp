@@ -1,6 +1,6 @@
-// The output "albedo" for vertices in blocks : a sum over the lobes of a camera ray's point.
+// The output "albedo": a sum over the lobes of a camera ray's point.
 #include "integrator/accumulator.h"
-#include "integrator/blockvertices.h"
+#include "integrator/lobeselection.h"
 #include "services/random.h"
 #include <algorithm>
 
@@ -40,21 +40,21 @@ static Color measuredAlbedo(const BlockLobes& s, const PathRay& ray, size_t poin
     return sum / float(kDraws);
 }
 
-void BlockVertices::showAlbedo(BatchContext& c) {
+void LobeSelection::showAlbedo(BatchContext& c) {
     if (c.aside) return;
-    for (size_t point = 0; point < points_; ++point) {
+    for (size_t point = 0; point < v_.points; ++point) {
         const PathRay& ray = c.rays[point];
         if (!ray.counts) continue;
         const size_t b = point / kBlock, i = point % kBlock;
         Color exact(0);
         std::vector<Color> measured;
-        for (size_t k = 0; k < count_; ++k) {
-            const LobeBlock& l = sites_[k].lobes[b];
+        for (size_t k = 0; k < v_.count; ++k) {
+            const LobeBlock& l = v_.sites[k].lobes[b];
             if (!(l.asked >> i & 1)) continue;
             const Color weight(l.weight[0][i], l.weight[1][i], l.weight[2][i]);
-            if (l.lobe[kRowDelta][i] != 0 || sites_[k].walks || !albedoIsMeasured(*sites_[k].kind, sites_[k].raysAt(point)))
+            if (l.lobe[kRowDelta][i] != 0 || v_.sites[k].walks || !albedoIsMeasured(*v_.sites[k].kind, v_.sites[k].raysAt(point)))
                 exact += weight * l.lobe[kRowAlbedo][i];
-            else measured.push_back(ray.weight * weight * measuredAlbedo(sites_[k], ray, point));
+            else measured.push_back(ray.weight * weight * measuredAlbedo(v_.sites[k], ray, point));
         }
         Color& albedo = accumulator_.results[size_t(ray.sample->path)]->albedo;
         albedo += ray.weight * exact;

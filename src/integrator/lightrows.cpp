@@ -1,21 +1,19 @@
-// Light samples for vertices in blocks where points, kernel and values are rows, without a structure for each point: emitters of
-// a few flat triangles, and lights without geometry. blocklights.cpp handles the other lights, with the same bits.
+// Light samples where points, kernel and values are rows, without a structure for each point: emitters of a few flat triangles,
+// and lights without geometry. lightvalues.cpp handles the other lights, with the same bits.
 #include "base/direction.h"
 #include "integrator/accumulator.h"
 #include "integrator/batchpool.h"
-#include "integrator/blockvertices.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/lightkernels.h"
-#include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
-#include "integrator/vertexlight.h"
+#include "integrator/lightsampling.h"
 #include <algorithm>
 #include <bit>
 
 namespace alpenglow::integrator {
 
 /// Whether stage `place` makes the points on the light, or the light is a point, and its kernel needs nothing else.
-bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
+bool LightSampling::inRows(const BoundLight& l, const BoundKernel& of) const {
     const bool emitter = l.kind == LightKind::Area;
     if (!of || l.hazy || l.asksSurface || l.channels || l.sentCl >= 0 || (emitter && !l.emitter)) return false;
     if (!emitter && of.plan->readsNormal()) return false; // it is the shading normal of the lit point, which rows lack
@@ -26,15 +24,10 @@ bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
     return of.plan->readsLightRows() && k.sites().empty() && !k.facts().suspends && !k.facts().lightLoops && !l.instance->moving;
 }
 
-void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
-    askInRows(light, c);
-    connect(light, c);
-}
-
-/// Samples the light for each lit point of litBlocks_.
-void BlockVertices::askInRows(const BoundLight& light, const BatchContext& c) {
+/// Samples the light for each lit point of v_.litBlocks.
+void LightSampling::askInRows(const BoundLight& light, const BatchContext& c) {
     placeInRows(light, c.between || !rules_.pickOne ? nullptr : guideOf(world_, light));
-    const size_t n = litBlocks_.size() * kBlock;
+    const size_t n = v_.litBlocks.size() * kBlock;
     auto call = batches_.take();
     call->bound = &light.kernel;
     call->lit = nullptr;
@@ -56,51 +49,51 @@ void BlockVertices::askInRows(const BoundLight& light, const BatchContext& c) {
 }
 
 /// Chooses points on the light for blocks in which some points sample it.
-void BlockVertices::placeInRows(const BoundLight& light, const LightGuide* guide) {
+void LightSampling::placeInRows(const BoundLight& light, const LightGuide* guide) {
     beginLights(light);
-    const size_t n = litBlocks_.size() * kBlock;
+    const size_t n = v_.litBlocks.size() * kBlock;
     lamp_.resize(9 * n);
-    placed_.assign(litBlocks_.size(), {0xffffu, 0xffffu, 0xffffu});
+    placed_.assign(v_.litBlocks.size(), {0xffffu, 0xffffu, 0xffffu});
     if (light.kind == LightKind::Area) {
-        const uint32_t use = kLightPoint + numberOf(light);
-        drawOf(light, use << 1, pairs_);
-        if (takesChoice(light)) drawOf(light, use << 1 | render::SampleNumbers::kSingle, choices_);
+        const uint32_t use = kLightPoint + v_.numberOf(light);
+        drawOf(light, use << 1, v_.pairs);
+        if (takesChoice(light)) drawOf(light, use << 1 | render::SampleNumbers::kSingle, v_.choices);
     } else {
         const Vec3 origin = originOfLight(*light.instance, 0);
         for (size_t q = 0; q < 3; ++q) std::fill_n(lamp_.data() + q * n, n, origin[int(q)]);
         std::fill_n(lamp_.data() + 3 * n, 3 * n, 0.f);
     }
-    for (size_t k = 0; k < litBlocks_.size(); ++k) {
+    for (size_t k = 0; k < v_.litBlocks.size(); ++k) {
         if (light.kind == LightKind::Area) placeOnEmitter(k, light, guide);
         for (size_t q = 0; q < 3; ++q)
-            std::copy_n(vertices_[litBlocks_[k]].P[q], kBlock, lamp_.data() + (6 + q) * n + k * kBlock);
+            std::copy_n(v_.vertices[v_.litBlocks[k]].P[q], kBlock, lamp_.data() + (6 + q) * n + k * kBlock);
     }
 }
 
-/// The same for one of litBlocks_ on an emitter, shape by shape, each for the points that chose it.
-void BlockVertices::placeOnEmitter(size_t k, const BoundLight& light, const LightGuide* guide) {
+/// The same for one of v_.litBlocks on an emitter, shape by shape, each for the points that chose it.
+void LightSampling::placeOnEmitter(size_t k, const BoundLight& light, const LightGuide* guide) {
     const Emitter& emitter = *light.emitter;
-    const size_t b = litBlocks_[k], n = litBlocks_.size() * kBlock;
+    const size_t b = v_.litBlocks[k], n = v_.litBlocks.size() * kBlock;
     float *P = lamp_.data() + k * kBlock, *N = P + 3 * n;
-    LightBlock& l = lights_[b];
+    LightBlock& l = v_.lights[b];
     const std::span<const FlatEmitter> shapes = emitter.flat();
-    const VertexBlock& v = vertices_[b];
+    const VertexBlock& v = v_.vertices[b];
     Lanes of[limits::kLightsSampled] = {};
     alignas(64) double share[kBlock];
-    const GuidedLanes guided(guide, v, lit_[b], pairs_[b].x);
+    const GuidedLanes guided(guide, v, v_.lit[b], v_.pairs[b].x);
     for (size_t i = 0; i < size_t(kBlock); ++i) {
-        const float choose = shapes.size() > 1 ? choices_[b].x[i] : 0;
+        const float choose = shapes.size() > 1 ? v_.choices[b].x[i] : 0;
         of[emitter.flatFrom({v.P[0][i], v.P[1][i], v.P[2][i]}, choose, share[i])] |= 1u << i;
     }
     BlockPlaced& placed = placed_[k] = {};
     for (size_t s = 0; s < shapes.size(); ++s) {
-        if (!(of[s] & lit_[b])) continue;
+        if (!(of[s] & v_.lit[b])) continue;
         LightBlock mine;
         alignas(64) Row rows[6];
         const bool all = of[s] == 0xffffu;
         const Lanes there =
-            of[s] & (all ? stages_.place(v, shapes[s], pairs_[b].x, pairs_[b].y, share, l, P, N, int(n))
-                         : stages_.place(v, shapes[s], pairs_[b].x, pairs_[b].y, share, mine, rows[0], rows[3], kBlock));
+            of[s] & (all ? stages_.place(v, shapes[s], v_.pairs[b].x, v_.pairs[b].y, share, l, P, N, int(n))
+                         : stages_.place(v, shapes[s], v_.pairs[b].x, v_.pairs[b].y, share, mine, rows[0], rows[3], kBlock));
         for (Lanes left = all ? 0 : of[s]; left; left &= left - 1) {
             const size_t i = size_t(std::countr_zero(left));
             for (size_t q = 0; q < 3; ++q) {
@@ -117,18 +110,18 @@ void BlockVertices::placeOnEmitter(size_t k, const BoundLight& light, const Ligh
 }
 
 /// Places samples where the guide's directions lead, and gives all points that have a guide the density of the mixture.
-void BlockVertices::followGuide(size_t k, const BoundLight& light, const LightGuide& guide, const GuidedLanes& guided) {
-    const size_t b = litBlocks_[k], n = litBlocks_.size() * kBlock;
+void LightSampling::followGuide(size_t k, const BoundLight& light, const LightGuide& guide, const GuidedLanes& guided) {
+    const size_t b = v_.litBlocks[k], n = v_.litBlocks.size() * kBlock;
     float *P = lamp_.data() + k * kBlock, *N = P + 3 * n;
-    LightBlock& l = lights_[b];
-    const VertexBlock& v = vertices_[b];
+    LightBlock& l = v_.lights[b];
+    const VertexBlock& v = v_.vertices[b];
     BlockPlaced& placed = placed_[k];
     for (Lanes left = guided.guided; left; left &= left - 1) {
         const size_t i = size_t(std::countr_zero(left));
         const Vec3 from(v.P[0][i], v.P[1][i], v.P[2][i]);
         const LightGuide::Cell& cell = *guided.cell[i];
         if (guided.toward >> i & 1) {
-            const Vec3 w = guide.draw(cell, from, {pairs_[b].x[i], pairs_[b].y[i]});
+            const Vec3 w = guide.draw(cell, from, {v_.pairs[b].x[i], v_.pairs[b].y[i]});
             Emitter::Sample s;
             geometry::SurfacePoint point;
             const Lanes bit = 1u << i;
@@ -151,22 +144,22 @@ void BlockVertices::followGuide(size_t k, const BoundLight& light, const LightGu
 }
 
 /// Reads the light at the points from the outputs of its kernel.
-void BlockVertices::takeRows(const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
-    values_.clear();
-    queryAt_.clear();
-    if (light.shadowRadius >= 0) queryAt_.resize(points_, -1);
-    for (size_t k = 0; k < litBlocks_.size(); ++k) {
-        LightBlock& l = lights_[litBlocks_[k]];
+void LightSampling::takeRows(const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
+    v_.values.clear();
+    v_.queryAt.clear();
+    if (light.shadowRadius >= 0) v_.queryAt.resize(v_.points, -1);
+    for (size_t k = 0; k < v_.litBlocks.size(); ++k) {
+        LightBlock& l = v_.lights[v_.litBlocks[k]];
         takeLightOf(k, light, from, c);
         l.metDiffuse = l.asked & placed_[k].metDiffuse;
         l.metSpecular = l.asked & placed_[k].metSpecular;
     }
 }
 
-/// The same for one of litBlocks_.
-void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
-    const size_t b = litBlocks_[k], first = k * kBlock;
-    LightBlock& l = lights_[b];
+/// The same for one of v_.litBlocks.
+void LightSampling::takeLightOf(size_t k, const BoundLight& light, const shading::Batch& from, const BatchContext& c) {
+    const size_t b = v_.litBlocks[k], first = k * kBlock;
+    LightBlock& l = v_.lights[b];
     const auto row = [&](int output, int component) { return from.row(output, component).data() + first; };
     const auto way = [&](int i) {
         return light.outL < 0 ? Vec3() : Vec3(row(light.outL, 0)[i], row(light.outL, 1)[i], row(light.outL, 2)[i]);
@@ -183,7 +176,7 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
     kept(light.nonDiffuse, l.keptDiffuse);
     kept(light.nonSpecular, l.keptSpecular);
     if (light.kind != LightKind::Area) placeFar(light, from, first, l);
-    for (Lanes left = lit_[b] & placed_[k].points; left; left &= left - 1) {
+    for (Lanes left = v_.lit[b] & placed_[k].points; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         if (light.outLit >= 0 && row(light.outLit, 0)[i] == 0) continue;
         const Color Cl{l.Cl[0][i], l.Cl[1][i], l.Cl[2][i]};
@@ -195,15 +188,15 @@ void BlockVertices::takeLightOf(size_t k, const BoundLight& light, const shading
             LightValue says;
             if (asksShadowDisk(light, from, first + size_t(i), says)) {
                 says.L = way(i);
-                queryAt_[point] = int32_t(values_.size());
-                values_.push_back(says);
+                v_.queryAt[point] = int32_t(v_.values.size());
+                v_.values.push_back(says);
             }
         }
     }
 }
 
 /// Position of a light without geometry, seen from the points of a block. at: index of the block's first point in the batch.
-void BlockVertices::placeFar(const BoundLight& light, const shading::Batch& from, size_t at, LightBlock& l) const {
+void LightSampling::placeFar(const BoundLight& light, const shading::Batch& from, size_t at, LightBlock& l) const {
     alignas(64) static constexpr Row kNone[3] = {};
     const float* L = light.outL < 0 ? kNone[0] : from.row(light.outL, 0).data() + at;
     const int stride = light.outL < 0 ? kBlock : int(from.row(light.outL, 1).data() - from.row(light.outL, 0).data());
@@ -215,11 +208,18 @@ void BlockVertices::placeFar(const BoundLight& light, const shading::Batch& from
 }
 
 /// Whether the light has a disk-shaped shadow source, and its size. at: index in the batch.
-bool BlockVertices::asksShadowDisk(const BoundLight& light, const shading::Batch& from, size_t at, LightValue& v) {
+bool LightSampling::asksShadowDisk(const BoundLight& light, const shading::Batch& from, size_t at, LightValue& v) {
     if (light.shadowRadius < 0) return false;
     const float samples = light.shadowSamples < 0 ? 1 : from.value(light.shadowSamples, 0, int(at));
     lightKernels_.takeShadowSays(v, light, from.value(light.shadowRadius, 0, int(at)), samples);
     return v.shadowRadius > 0;
+}
+
+bool LightSampling::sampleInRows(const BoundLight& light, const BatchContext& c) {
+    if (!inRows_[v_.numberOf(light)]) return false;
+    findLit(&light);
+    askInRows(light, c);
+    return true;
 }
 
 } // namespace alpenglow::integrator

@@ -1,21 +1,33 @@
-// Photons in flight, for vertices in blocks of 16 (blockvertices.h): stored at lobes that are not deltas, and continued along a
-// lobe with the adjoint power (photonfactor.cpp).
+// Photons at vertices: stored at lobes that are not deltas, and continued along a lobe with the adjoint power (photonfactor.cpp).
+// Reads VertexBlocks::sites; writes PhotonTrace::out and rays.
 #pragma once
-#include "integrator/blockvertices.h"
 #include "integrator/photonjob.h"
+#include "integrator/vertexblocks.h"
+#include <memory>
 #include <optional>
 
 namespace alpenglow::integrator {
 
-class BlockVertices::Flight {
+class Accumulator;
+class BatchPool;
+class Intersector;
+class KernelInputs;
+class PhotonStage;
+class SubsurfaceWalks;
+class Transparency;
+class VertexLight;
+
+class PhotonFlight final : VertexStage {
 public:
-    Flight(BlockVertices&, const StageSet&);
-    ~Flight();
+    PhotonFlight(const StageSet&, const VertexStages&);
+    ~PhotonFlight();
     /// Whether the pipeline traces photons.
     bool on() const;
     /// After request(): replaces the lobes of points with a photon shading model. all: surfaces without one have a matte one.
     void takeModels(const BatchContext&, bool all);
-    /// After prepare(): stores the photons and sends them on.
+    /// Sets LobeBlock::narrow, and boundless: paths sample the light from which a photon arrives here at any depth.
+    void mark(BatchContext&);
+    /// After LobeSelection::prepare(): stores the photons and sends them on.
     void follow(BatchContext&, Sched&);
 
 private:
@@ -25,7 +37,6 @@ private:
         int site; ///< of the lobe
     };
     Site& modelSite(size_t first, int k, const struct ModelLobe&);
-    void mark(BatchContext&);
     void limitDepths(const BatchContext&);
     void limitDepth(size_t block, const BatchContext&);
     std::optional<PhotonDepths> depthsBehind(const PathRay&, const SurfaceBinding&, bool diffuse) const;
@@ -39,7 +50,7 @@ private:
     float photonWay(const Site&, size_t point, const BatchContext&, Vec3& w) const;
     float survival(const PathRay&, const Color& request, const Color& weight, float dice) const;
     void keep(size_t block, const BatchContext&);
-    // blocklookback.cpp
+    // photonlookback.cpp
     void lookBack(const BatchContext&, Sched&);
     void shadeBack(BatchContext&, const BatchContext& from);
     bool isLit(const Site&, size_t point, const BatchContext&) const;
@@ -48,13 +59,22 @@ private:
     void densityBack(size_t block, Lanes turned, const BatchContext&, float* density);
     float energyScale(const Color& reflected, const Color& clear, const SurfaceBinding&) const;
 
-    BlockVertices& b_;
+    std::vector<ScatterBlock> picked_;  ///< by block: the lobes that photons follow, and their directions
+    std::vector<Turned> turned_;        ///< photons along narrow lobes
+    std::vector<Color> back_;           ///< by point, for these: value of the reverse path over the density
+    std::unique_ptr<VertexLight> seen_; ///< the lobes of their points as paths see them
     const StageSet& set_;
-    std::vector<ScatterBlock> picked_;    ///< by block: the lobes that photons follow, and their directions
-    std::vector<Turned> turned_;          ///< photons along narrow lobes
-    std::vector<Color> back_;             ///< by point, for these: value of the reverse path over the density
-    std::unique_ptr<BlockVertices> seen_; ///< the lobes of their points as paths see them
+    LobeLanesList lanes_;
+    Accumulator& accumulator_;
+    BatchPool& batches_;
+    PhotonGather& gathered_;
+    KernelInputs& inputs_;
     Intersector& intersector_;
+    PhotonStage& photons_;
+    ScatterRays& scatter_;
+    LobeSelection& selection_;
+    RayStore& store_;
+    SubsurfaceWalks& subsurface_;
     Transparency& transparency_;
 };
 

@@ -135,7 +135,8 @@ void BlockVertices::Flight::limitDepth(size_t b, const BatchContext& c) {
     for (size_t i = 0; i < size_t(kBlock); ++i) {
         const size_t point = std::min(b * kBlock + i, b_.points_ - 1);
         for (const bool diffuse : {false, true}) {
-            const bool deep = !depthsBehind(c.rays[point], b_.world_.bindings_[size_t(c.bindings[point])], diffuse);
+            const bool deep = c.rays[point].scattered >= limits::kPathDepth ||
+                              !depthsBehind(c.rays[point], b_.world_.bindings_[size_t(c.bindings[point])], diffuse);
             v.deep[diffuse] |= Lanes(deep) << i;
         }
     }

@@ -9,6 +9,7 @@
 #include "integrator/intersector.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/photonstage.h"
+#include "integrator/shadowrays.h"
 #include "integrator/transparency.h"
 #include "integrator/vertexlight.h"
 #include <algorithm>
@@ -25,7 +26,9 @@ void BlockVertices::Flight::lookBack(const BatchContext& c, Sched& sched) {
     shadeBack(*seen, c);
     seen_->begin(*seen, false);
     if (!seen_->takes(*seen) || !seen_->loadVertices(*seen) || !seen_->findSites(*seen) || !seen_->request(*seen)) {
+        const size_t settled = set_.shadows.settled.size();
         set_.requests.requestPairs(*seen, nullptr, sched);
+        set_.shadows.settled.resize(std::min(settled, set_.shadows.settled.size())); // of rays that no longer exist
         seen_->requested_->load(*seen);
     }
     seen_->prepare();

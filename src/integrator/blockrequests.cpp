@@ -50,7 +50,7 @@ bool BlockVertices::Requested::run(BatchContext& c, Sched& sched) {
     for (const LobeVertex& l : requests_.lobes) targets[size_t(l.point)] = l.target;
     c.targets.swap(targets);
     load(c);
-    if (b_.flight_->on()) b_.flight_->takeModels(c, false);
+    if (b_.flight_->on() && !c.between && !c.below) b_.flight_->takeModels(c, false);
     b_.followLobes(c, sched);
     c.targets.swap(targets);
     b_.counters_.inBlocks += b_.points_;
@@ -129,7 +129,8 @@ void BlockVertices::Requested::takeRequest(Site& s, const LobeVertex& l) {
     for (int r = 0; r < kLobeRows; ++r) b.lobe[r][i] = requests_.rows.row(l.place, r);
     b.asked |= 1u << i;
     b.elsewhere |= Lanes(l.elsewhere) << i;
-    const bool indirect = world_.settings_.indirect || l.rays->type != RayType::Diffuse || l.below >= 0;
+    const bool indirect = world_.settings_.indirect || b_.flight_->on() || // Flight::limitDepths()
+                          l.rays->type != RayType::Diffuse || l.below >= 0;
     b.stays |= Lanes(l.directOnly || !indirect) << i;
     s.lights |= l.lights;
     if (l.occurrence > 0) {

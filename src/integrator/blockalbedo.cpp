@@ -1,11 +1,16 @@
-// The output "albedo" for vertices in blocks (lobeselection.h, albedo.cpp): a sum over the lobes of a camera ray's point.
+// The output "albedo" for vertices in blocks : a sum over the lobes of a camera ray's point.
 #include "integrator/accumulator.h"
 #include "integrator/blockvertices.h"
-#include "integrator/lobeselection.h"
 #include "services/random.h"
 #include <algorithm>
 
 namespace alpenglow::integrator {
+
+/// Sampled directions for the estimate of an albedo.
+constexpr uint32_t kAlbedoDraws = 8;
+
+/// Whether the output "albedo" of lobes of this kind that are no deltas has no closed form.
+static bool albedoIsMeasured(const LobeKind& k, const RayKind& rays) { return k.distribution || rays.type != RayType::Diffuse; }
 
 /// An unbiased estimate from sampled directions, one in a lane.
 static Color measuredAlbedo(const BlockLobes& s, const PathRay& ray, size_t point) {

@@ -32,17 +32,12 @@ void BlockVertices::walkBelow(size_t b, BatchContext& c) {
     }
 }
 
-bool BlockVertices::runExits(BatchContext& c, std::span<const float> indirect, Sched& sched) {
-    const bool flies = flight_->on(), plain = !flies && usable_ && rules_.pickOne && plain_[size_t(c.binding->lightList)];
-    if (flies ? !flight_->fits(c) : !plain || !takesRays(c)) return false;
-    if (!flies && !std::all_of(indirect.begin(), indirect.end(), [](float x) { return x > 0; }))
-        return false; // guide rays need light
+void BlockVertices::runExits(BatchContext& c, std::span<const float> indirect, Sched& sched) {
     begin(c, false);
-    if (!loadVertices(c)) return false;
+    loadVertices(c);
     indirect_ = indirect;
     beginExits(c);
     followLobes(c, sched);
-    return true;
 }
 
 /// Sets the lobes: diffuse about the normal.
@@ -58,6 +53,7 @@ void BlockVertices::beginExits(const BatchContext& c) {
     s.rays = &kDiffuseKind;
     s.lighting = s.lights = s.diffuse = true;
     s.begin(blocks_);
+    if (moved_) s.options.assign(points_, {});
     for (size_t b = 0; b < blocks_; ++b) {
         LobeBlock& l = s.lobes[b];
         l.asked = vertices_[b].points;

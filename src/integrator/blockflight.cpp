@@ -15,16 +15,11 @@
 namespace alpenglow::integrator {
 
 BlockVertices::Flight::Flight(BlockVertices& b, const StageSet& s)
-    : b_(b), set_(s), intersector_(s.intersector), transparency_(s.transparency) {
-    const WorldImpl& world = s.context.world;
-    fits_ = world.settings_.blocks && world.accel_ != nullptr; // requires a complete world
-}
+    : b_(b), set_(s), intersector_(s.intersector), transparency_(s.transparency) {}
 
 BlockVertices::Flight::~Flight() = default;
 
 bool BlockVertices::Flight::on() const { return b_.photons_.photonTrace() != nullptr; }
-
-bool BlockVertices::Flight::fits(const BatchContext& c) const { return fits_ && b_.takesRays(c); }
 
 static Vec3 rowsAt(const Row* rows, size_t i) { return {rows[0][i], rows[1][i], rows[2][i]}; }
 

@@ -13,8 +13,6 @@ public:
     ~Flight();
     /// Whether the pipeline traces photons.
     bool on() const;
-    /// Whether blocks can process these photons.
-    bool fits(const BatchContext&) const;
     /// After request(): replaces the lobes of points with a photon shading model. all: surfaces without one have a matte one.
     void takeModels(const BatchContext&, bool all);
     /// After prepare(): stores the photons and sends them on.
@@ -58,7 +56,6 @@ private:
     std::unique_ptr<BlockVertices> seen_; ///< the lobes of their points as paths see them
     Intersector& intersector_;
     Transparency& transparency_;
-    bool fits_ = false; ///< the world and the settings allow blocks
 };
 
 } // namespace alpenglow::integrator

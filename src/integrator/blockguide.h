@@ -1,4 +1,4 @@
-// Guide rays for vertices in blocks of 16 (blockvertices.h). Same bits as guidescatter.h.
+// Guide rays for vertices in blocks of 16 (blockvertices.h).
 #pragma once
 #include "integrator/blockvertices.h"
 #include "integrator/guiderays.h"

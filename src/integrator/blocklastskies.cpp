@@ -47,7 +47,7 @@ void BlockVertices::endLobe(const Site& s, size_t b, const BatchContext& c) {
         LastRay& ray = ends_.emplace_back(int(point), &s.raysAt(point), originOf(s, point, w), w, weight, c.targets[point]);
         ray.maxDistance = s.options.empty() ? 1e38f : s.options[point].maxDistance;
         ray.share = shareOf(s, point, c.rays[point]);
-        if (const LobeVertex* request = s.requestAt(point)) ray.lit = request->lit;
+        ray.lit = toldAt(point);
         ray.path = pathOf(s, false, point, w, c);
     }
 }

@@ -5,7 +5,7 @@
 
 namespace alpenglow::integrator {
 
-/// Block version of LobeSelection::lightDirections().
+/// Selects lights for light-directed sampling, and the lobes that use it.
 void BlockVertices::lightDirections(const BatchContext& c) {
     for (size_t k = 0; k < count_; ++k) sites_[k].beside.clear();
     if (waits_ || c.between || !mediumEvents_.surfacesAim()) return; // rays of waiting kernels follow the lobe's density alone

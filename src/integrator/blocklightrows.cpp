@@ -17,7 +17,7 @@ namespace alpenglow::integrator {
 /// Whether stage `place` makes the points on the light, or the light is a point, and its kernel needs nothing else.
 bool BlockVertices::inRows(const BoundLight& l, const BoundKernel& of) const {
     const bool emitter = l.kind == LightKind::Area;
-    if (!of || l.hazy || (emitter && !l.emitter)) return false;
+    if (!of || l.hazy || l.asksSurface || l.channels || l.sentCl >= 0 || (emitter && !l.emitter)) return false;
     if (!emitter && of.plan->readsNormal()) return false; // it is the shading normal of the lit point, which rows lack
     if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.isSky() || l.cone) return false;
     for (size_t i = 0; emitter && i < l.emitter->flat().size(); ++i)
@@ -33,7 +33,7 @@ void BlockVertices::lightInRows(const BoundLight& light, BatchContext& c) {
 
 /// Samples the light for each lit point of litBlocks_.
 void BlockVertices::askInRows(const BoundLight& light, const BatchContext& c) {
-    placeInRows(light, c.between ? nullptr : guideOf(world_, light));
+    placeInRows(light, c.between || !rules_.pickOne ? nullptr : guideOf(world_, light));
     const size_t n = litBlocks_.size() * kBlock;
     auto call = batches_.take();
     call->bound = &light.kernel;
@@ -62,9 +62,9 @@ void BlockVertices::placeInRows(const BoundLight& light, const LightGuide* guide
     lamp_.resize(9 * n);
     placed_.assign(litBlocks_.size(), {0xffffu, 0xffffu, 0xffffu});
     if (light.kind == LightKind::Area) {
-        const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
-        drawNumbers(use << 1, pairs_);
-        if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
+        const uint32_t use = kLightPoint + numberOf(light);
+        drawOf(light, use << 1, pairs_);
+        if (takesChoice(light)) drawOf(light, use << 1 | render::SampleNumbers::kSingle, choices_);
     } else {
         const Vec3 origin = originOfLight(*light.instance, 0);
         for (size_t q = 0; q < 3; ++q) std::fill_n(lamp_.data() + q * n, n, origin[int(q)]);

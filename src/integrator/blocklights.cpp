@@ -3,10 +3,10 @@
 #include "integrator/accumulator.h"
 #include "integrator/blockphotons.h"
 #include "integrator/chosenlights.h"
-#include "integrator/lightkernels.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
 #include "integrator/mediastacks.h"
+#include "integrator/ownshadows.h"
 #include "integrator/raystore.h"
 #include "integrator/shadowrays.h"
 #include "integrator/surfacepoints.h"
@@ -18,27 +18,35 @@
 
 namespace alpenglow::integrator {
 
-void BlockVertices::light(BatchContext& c) {
+void BlockVertices::light(BatchContext& c, Sched& sched) {
+    if (!rules_.lightsAtRequests) return;
+    several_ = drawsSeveral();
     if (paths_.automaton) surfaces_.pointsOfRows(c); // needed to tell reflection from transmission
     const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
-    if (!list.chooser.empty()) {
+    if (choosesLights(list)) {
         findLit(nullptr);
-        if (!litBlocks_.empty()) chosen_->light(list, c);
+        if (!litBlocks_.empty()) chosen_->light(list, c, sched);
         return;
     }
-    for (const int number : list.sampled) {
+    for (const int number : world_.sampledOf(list)) {
+        if (list.ofAll && !list.lights.contains(number)) continue;
         const BoundLight& light = world_.lights_[size_t(number)];
-        if (!light.importance) continue; // only rays find it
         findLit(&light);
         if (c.between) takeParts(light, c);
-        if (!litBlocks_.empty()) lightAlone(light, c);
+        if (!litBlocks_.empty()) lightAlone(light, c, sched);
     }
     for (const int number : world_.skies_) {
         const BoundLight& light = world_.lights_[size_t(number)];
-        if (!light.guidable || waits_ || c.between || !guideOf(world_, light) || !list.lights.contains(number)) continue;
+        if (!light.guidable || !rules_.pickOne || waits_ || c.between || !guideOf(world_, light) || !list.lights.contains(number))
+            continue;
         findLit(&light);
-        if (!litBlocks_.empty()) lightAlone(light, c);
+        if (!litBlocks_.empty()) lightAlone(light, c, sched);
     }
+}
+
+/// Whether each point samples some of the lights of a list, instead of all.
+bool BlockVertices::choosesLights(const WorldImpl::LightList& list) const {
+    return rules_.pickOne && !(world_.chooserOf(list).empty() && list.deeper.empty());
 }
 
 /// Finds the points that sample a light; null: any light.
@@ -58,17 +66,21 @@ Lanes BlockVertices::litBy(size_t site, size_t b, const BoundLight& light) const
     const LobeBlock& l = sites_[site].lobes[b];
     Lanes some = l.lights & ~gathered_->bring(l, light);
     for (int i = 0; light.guidable && i < kBlock; ++i) some &= ~(Lanes(!(l.chosen[i] > 0)) << i);
+    for (Lanes left = draw_ > 0 ? some : 0; left; left &= left - 1) {
+        const size_t i = size_t(std::countr_zero(left));
+        if (draw_ >= uint32_t(drawsOf(sites_[site], b * kBlock + i))) some &= ~(1u << i);
+    }
     return some;
 }
 
-/// Samples one light for the points of lit_ and litBlocks_.
-void BlockVertices::lightAlone(const BoundLight& light, BatchContext& c) {
+/// Takes one sample of a light for the points of lit_ and litBlocks_.
+void BlockVertices::lightOnce(const BoundLight& light, BatchContext& c) {
     if (isWide(light) && onlySite_ < 0) return lightWide(light, c);
-    if (inRows_[size_t(&light - world_.lights_.data())]) return lightInRows(light, c);
+    checksHits_ = checksHits(light);
+    if (inRows_[numberOf(light)] && !checksHits_) return lightInRows(light, c);
     sampleLight(light, c);
     if (asked_.empty()) return;
-    values_.assign(asked_.size(), {});
-    lightKernels_.evaluateLight(light, queries_, values_);
+    askQueries(light, nullptr, {}, c);
     takeValues(light, c);
     connect(light, c);
 }
@@ -79,14 +91,15 @@ void BlockVertices::lightWide(const BoundLight& light, BatchContext& c) {
         onlySite_ = int(k);
         findLit(&light);
         if (c.between) takeParts(light, c);
-        if (!litBlocks_.empty()) lightAlone(light, c);
+        if (!litBlocks_.empty()) lightOnce(light, c);
     }
     onlySite_ = -1;
 }
 
 /// Whether lobes of a call site sample a light. trace() without "samplelights" samples emitters and skies only; it samples none
 /// that illuminance loops handle.
-bool BlockVertices::samples(const Site& s, const BoundLight& light) {
+bool BlockVertices::samples(const Site& s, const BoundLight& light) const {
+    if (!light.importance && (!s.lighting || rules_.emissionCounts)) return false; // only rays find it
     if (!s.lights || s.lighting) return s.lights;
     return (light.kind == LightKind::Area || light.isSky() || s.info->allLights) && light.strategy != LightStrategy::Illuminance;
 }
@@ -95,18 +108,19 @@ bool BlockVertices::samples(const Site& s, const BoundLight& light) {
 bool BlockVertices::placeQuery(const BoundLight& light, const LightGuide* guide, const LightNumbers& u, const ShadePoint& lit,
                                ShadePoint& q, Emitter::Sample& s) const {
     tellLit(q, lit);
-    if (!placeLightSample(world_, light, guide, u, true, q, s)) return false;
+    if (!placeLightSample(world_, light, guide, u, rules_.pickOne, q, s)) return false;
     // Sides 1: rays pass through the emitter from its back, so it sends nothing there.
-    return light.kind != LightKind::Area || light.mean || !s.shape->oneSided() ||
+    return checksHits_ || light.kind != LightKind::Area || light.mean || !s.shape->oneSided() ||
            dot(intersectsNormal(q.surface), s.direction) < 0;
 }
 
 /// Chooses a point on the light for each point that samples it.
 void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
-    const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
-    if (takesPair(light, true)) drawNumbers(use << 1, pairs_);
-    if (takesChoice(light)) drawNumbers(use << 1 | render::SampleNumbers::kSingle, choices_);
-    const LightGuide* const guide = c.between ? nullptr : guideOf(world_, light);
+    const uint32_t use = kLightPoint + numberOf(light);
+    const bool pair = takesPair(light, rules_.pickOne);
+    if (pair) drawOf(light, use << 1, pairs_);
+    if (takesChoice(light)) drawOf(light, use << 1 | render::SampleNumbers::kSingle, choices_);
+    const LightGuide* const guide = c.between || !rules_.pickOne ? nullptr : guideOf(world_, light);
     asked_.clear();
     surfaces_.pointsOfRows(c);
     for (size_t b = 0; b < blocks_; ++b)
@@ -117,7 +131,7 @@ void BlockVertices::sampleLight(const BoundLight& light, BatchContext& c) {
             BlockQuery& a = asked_.emplace_back();
             a.point = point;
             LightNumbers u;
-            if (takesPair(light, true)) u.pair = {pairs_[b].x[lane], pairs_[b].y[lane]};
+            if (pair) u.pair = {pairs_[b].x[lane], pairs_[b].y[lane]};
             if (takesChoice(light)) u.choose = choices_[b].x[lane];
             const ShadePoint& at = c.points[size_t(point)];
             const bool placed = placeQuery(light, guide, u, at, q, a.sample);
@@ -177,23 +191,22 @@ void BlockVertices::connect(const BoundLight& light, BatchContext& c) {
         if (lights_[b].asked) connectBlock(b, light, c);
 }
 
-/// Whether a call returns parts of its result.
-static bool returnsSums(const BlockLobes& s) { return s.info && s.info->kind == SiteKind::Trace && s.info->trace->sums; }
-
 /// Evaluates the lobes of a call site at `points` for their lights, into value_; adds the result to shadow rays that were already
 /// sent. pointOf: by lane, index in the batch. Returns the lanes whose ray is still to be sent.
-Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, const LightBlock& l,
-                                BatchContext& c, const size_t* pointOf) {
+Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, LightBlock& l, BatchContext& c,
+                                const size_t* pointOf) {
     Lanes failed = 0, fresh = 0;
+    for (size_t i = 0; several_ && i < size_t(kBlock); ++i) draws_[i] = float(drawsOf(s, pointOf[i]));
+    l.draws = several_ ? draws_ : nullptr; // the lobe's weight counts once for all of them
     s.addLightDirected(lobe.lights & l.asked, l.w, pointOf, value_[kRowPdf]);
     const float* kept = !s.lighting && l.met ? whole_ : s.diffuse ? l.keptDiffuse : l.keptSpecular;
-    Lanes some = stages_.contribute(points, lobe, l, kept, s.diffuse ? l.metDiffuse : l.metSpecular, !s.lighting, value_[0],
-                                    shadow_, &failed);
+    const Lanes met = world_.settings_.lightOnly ? 0 : s.diffuse ? l.metDiffuse : l.metSpecular;
+    Lanes some = stages_.contribute(points, lobe, l, kept, met, !s.lighting, value_[0], shadow_, &failed);
     for (; failed; failed &= failed - 1) accumulator_.notFinite(c, c.rays[pointOf[std::countr_zero(failed)]], uint32_t(s.number));
-    const bool sums = returnsSums(s) && l.emitter;
+    const bool sums = !s.lighting && s.info->trace->sums;
+    if (sums && l.emitter) sumUnshadowed(s, points, lobe, l, some, c, pointOf);
     for (; some; some &= some - 1) {
         const int lane = std::countr_zero(some);
-        if (sums) addUnshadowed(lobe, l, size_t(lane), c.targets[pointOf[lane]]);
         if (sent_[lane] < 0) {
             fresh |= 1u << lane;
             continue;
@@ -208,38 +221,23 @@ Lanes BlockVertices::contribute(const Site& s, const VertexBlock& points, const 
     return fresh;
 }
 
-/// Adds the light of an emitter without occlusion to the sums of a waiting call.
-void BlockVertices::addUnshadowed(const LobeBlock& lobe, const LightBlock& l, size_t i, AccumulatorId target) {
-    TraceSums* const sums = accumulator_.sumsOf(target);
-    if (!sums) return;
-    const auto row3 = [&](const float(*r)[kBlock]) { return Color(r[0][i], r[1][i], r[2][i]); };
-    const float fcos = value_[kRowFcos][i];
-    sums->add(TraceSums::UnshadowedAreaLight,
-              row3(lobe.weight) * row3(l.Cl) * (row3(&value_[kRowColour]) / fcos) * (fcos / l.density[i]));
-}
-
 /// Makes the shadow rays of a block: one per point, for all of its lobes.
 void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
     size_t points[kBlock];
     std::iota(points, points + kBlock, b * kBlock);
+    const BoundLight* lights[kBlock];
+    std::fill_n(lights, kBlock, &of);
     LightBlock& l = lights_[b];
     l.parted = c.between; // takeParts()
     stages_.aim(vertices_[b], l, shadow_);
     std::fill_n(sent_, kBlock, -1);
     const Lanes placed = l.asked;
-    ShadowBlock common;
-    int32_t shared[kBlock]; // sent_ of the lobes without options
     for (size_t k = 0; k < count_; ++k) {
         const Site& s = sites_[k];
         const LobeBlock& lobe = s.lobes[b];
         l.asked = litBy(k, b, of) & placed;
-        const bool own = !s.options.empty(); // shadow rays of its own
-        if (own) {
-            common = shadow_;
-            limitShadows(s, b, of, l);
-            std::copy_n(sent_, kBlock, shared);
-            std::fill_n(sent_, kBlock, -1);
-        }
+        OwnShadows own(*this, s);
+        own.limit(s, points, lights, checksHits_ ? queryAt_.data() + b * kBlock : nullptr, l);
         const Lanes asked = l.asked;
         if (asked) s.lanes->evaluate(lobe.lobe[0], asked, l.w[0], value_[0]);
         for (Lanes some = contribute(s, vertices_[b], lobe, l, c, points); some; some &= some - 1) {
@@ -257,10 +255,6 @@ void BlockVertices::connectBlock(size_t b, const BoundLight& of, BatchContext& c
                                 pdf},
                                int(&of - world_.lights_.data())});
             }
-        }
-        if (own) {
-            shadow_ = common;
-            std::copy_n(shared, kBlock, sent_);
         }
     }
 }
@@ -283,25 +277,29 @@ void BlockVertices::sendShadow(const Site& site, size_t point, size_t lane, cons
     const auto row3 = [&](const Row* r) { return Vec3(r[0][lane], r[1][lane], r[2][lane]); };
     sent_[lane] = int32_t(shadows_.queue.size());
     ShadowRay& s = shadows_.queue.emplace_back();
-    s = {row3(shadow_.origin), row3(shadow_.direction),
-         shadow_.length[lane], row3(shadow_.light),
-         c.targets[point],     world_.shadesAtOpen_ ? 0 : c.rays[point].shutter(),
-         &c.rays[point],       returnsSums(site) && of.kind == LightKind::Area};
+    s = {row3(shadow_.origin), row3(shadow_.direction), shadow_.length[lane],
+         row3(shadow_.light),  c.targets[point],        world_.shadesAtOpen_ ? 0 : c.rays[point].shutter(),
+         &c.rays[point]};
     s.share = shareOf(site, point, c.rays[point]);
+    const bool emitter = of.kind == LightKind::Area;
+    if (site.sets) s.kind = store_.kindOf({RayType::Transmission, false, site.raysAt(point).set, 0});
+    s.areaLight = emitter && !site.lighting && site.info->trace->sums;
     if (!world_.media_.empty()) s.media = media_.towards(c, int(point), w);
     s.path = pathOf(site, false, point, w, c);
-    if (s.path) s.light = paths_.lights[size_t(&of - world_.lights_.data())];
-    if (!says) return;
-    if (says->shadowRadius > 0) { // to a point on the disk
-        const uint32_t use = kLightPoint + uint32_t(&of - world_.lights_.data());
+    if (s.path) s.light = paths_.lights[numberOf(of)];
+    // Under the other hiders, light loops and trace() with "samplelights" let lights without "shadows" through.
+    const bool asInLoops = !rules_.pickOne && (c.below || (!site.lighting && !emitter && !of.isSky()));
+    if (says && says->shadowRadius > 0) { // to a point on the disk
         const VertexBlock& v = vertices_[point / kBlock];
-        const Vec2 u = store_.random(c.rays[point]).pair(v.lightVertex[point % kBlock], use, 0);
+        const uint32_t use = kLightPoint + numberOf(of), vertex = v.lightVertex[point % kBlock];
+        const Vec2 u = store_.random(c.rays[point]).pair(vertex, use, 0);
         const Vec3 P(v.P[0][point % kBlock], v.P[1][point % kBlock], v.P[2][point % kBlock]);
         const Vec3 to = onShadowDisk(P - says->L, s.dir, says->shadowRadius, u) - s.origin;
         s.dir = normalizeOr(to, s.dir);
         s.distance = length(to) * (1 - 1e-5f);
     }
-    if (says->ownShadow) s.distance = 0; // the light's shader computed visibility itself
+    // Not occluded; or the light's shader computed visibility itself.
+    if ((asInLoops && !of.shadows) || (says && says->ownShadow)) s.distance = 0;
 }
 
 } // namespace alpenglow::integrator

@@ -28,6 +28,7 @@ struct BlockLobes {
     bool apart = false;    ///< indirectdiffuse(): diffuse lobes of its points leave the light of surfaces to it
     bool direct = false;   ///< diffuse() where another call adds the light of surfaces
     bool walks = false;    ///< subsurface(): its rays walk below the surface
+    bool sets = false;     ///< rays of a trace() that hit other surfaces, or other sides, than rays of lighting shadeops
     uint32_t nth = 0;      ///< how many calls of a strip at this call site came before, in a loop
     std::vector<LobeBlock> lobes;
     std::vector<LightDirected> beside; ///< by point: light-directed sampling (lightdirected.h); empty: none
@@ -52,7 +53,7 @@ struct BlockLobes {
     void begin(size_t blocks) {
         lobes.resize(std::max(lobes.size(), blocks));
         for (size_t b = 0; b < blocks; ++b) lobes[b].forget();
-        walks = apart = direct = false;
+        walks = apart = direct = sets = false;
         nth = 0;
         narrow.clear();
         occurrence.clear();

@@ -11,23 +11,20 @@ namespace alpenglow::integrator {
 /// Whether light kernels of a binding read more at points inside media than rows hold.
 bool BlockVertices::needsPoints(const SurfaceBinding& b) const {
     const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
-    return flight_->on() || !usable_ || !rules_.pickOne || paths_.automaton || !list.chooser.empty() ||
-           !std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) { return inRows_[size_t(l)] != 0; });
+    const std::vector<int>& on = world_.sampledOf(list);
+    return flight_->on() || !rules_.pickOne || paths_.automaton || choosesLights(list) ||
+           !std::all_of(on.begin(), on.end(), [&](int l) { return inRows_[size_t(l)] != 0; });
 }
 
-bool BlockVertices::run(BatchContext& c, const Homogeneous& h, std::span<const Vec3> beside, Sched& sched) {
-    const SurfaceBinding& b = *c.binding;
-    const bool flies = flight_->on(), plain = !flies && usable_ && rules_.pickOne && plain_[size_t(b.lightList)];
-    if (flies ? !flight_->fits(c) : !plain || !takesRays(c)) return false;
+void BlockVertices::run(BatchContext& c, const Homogeneous& h, std::span<const Vec3> beside, Sched& sched) {
     begin(c, false);
     loadVertices(c);
     beginMedium(beside, h.anisotropy);
     followLobes(c, sched);
-    return true;
 }
 
 bool BlockVertices::light(const BatchContext& c, const Homogeneous& h, const BoundLight& light, std::vector<BlockLit>& found) {
-    if (!usable_ || !rules_.pickOne || !inRows_[size_t(&light - world_.lights_.data())]) return false;
+    if (!rules_.pickOne || !inRows_[size_t(&light - world_.lights_.data())]) return false;
     begin(c, false);
     loadVertices(c);
     beginMedium({}, h.anisotropy);

@@ -13,14 +13,12 @@ static const geometry::SurfacePoint& surfaceAt(const BatchContext& c, size_t poi
     return c.points.empty() ? c.surfaces[point] : c.points[point].surface;
 }
 
-/// Reads the parameters of a call. A ray with "weight" 0 is not sent. Returns false if points choose among many lights, whose
-/// shadow rays all begin alike.
+/// Reads the parameters of a call. A ray with "weight" 0 is not sent. Returns false if a point must be processed on its own.
 bool BlockVertices::readOptions(Site& s, BatchContext& c) {
     const auto elsewhere = [](const LobeBlock& l) { return l.elsewhere != 0; };
     if (!s.info->block->options && rules_.pickOne && std::none_of(s.lobes.begin(), s.lobes.begin() + long(blocks_), elsewhere))
         return true;
     const SiteInfo& info = *s.info;
-    if (s.lights && !world_.lightLists_[size_t(c.binding->lightList)].chooser.empty()) return false;
     s.options.assign(points_, {});
     for (size_t b = 0; b < blocks_; ++b)
         for (Lanes left = s.lobes[b].asked; left; left &= left - 1) {
@@ -43,9 +41,11 @@ bool BlockVertices::readOptions(Site& s, BatchContext& c) {
 }
 
 /// Sets the shadow rays of a call with a bias or a limit of distance, and removes samples out of its reach.
-void BlockVertices::limitShadows(const Site& s, size_t b, const BoundLight& of, LightBlock& l) {
+/// points, lights: by lane.
+void BlockVertices::limitShadows(const Site& s, const size_t* points, const BoundLight* const* lights, LightBlock& l) {
     for (Lanes left = l.asked; left; left &= left - 1) {
-        const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
+        const size_t i = size_t(std::countr_zero(left)), point = points[i];
+        const BoundLight& of = *lights[i];
         const RayOptions& o = s.options[point];
         const auto row3 = [&](const Row* r) { return Vec3(r[0][i], r[1][i], r[2][i]); };
         const Vec3 w = row3(l.w), origin = originOf(s, point, w), way = row3(l.end) - origin;

@@ -22,30 +22,10 @@ static bool shareSite(const BlockLobes& s, const LobeVertex& l) {
 BlockVertices::Requested::Requested(BlockVertices& b, const StageSet& s)
     : b_(b), world_(b.world_), requests_(s.requests), unshadowed_(s) {}
 
-bool BlockVertices::Requested::takes(const BatchContext& c) const {
-    if (b_.flight_->on()) return b_.flight_->fits(c);
-    if (!b_.usable_ || !b_.plain_[size_t(world_.bindings_[size_t(c.bindings[0])].lightList)]) return false;
-    const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[0])];
-    const auto hasOptions = [](const LobeVertex& l) {
-        return l.samples != 1 || l.bias >= 0 || l.base > 0 || l.elsewhere || l.importance != 1 || l.maxDistance < 1e38f ||
-               l.fade.fades();
-    };
-    if (!world_.lightLists_[size_t(b.lightList)].chooser.empty() &&
-        std::any_of(requests_.lobes.begin(), requests_.lobes.end(), hasOptions))
-        return false;
-    return std::all_of(requests_.lobes.begin(), requests_.lobes.end(), [&](const LobeVertex& l) {
-        const shading::RaySet& set = l.rays->set;
-        const bool plain = !set.only && set.sides == accel::Sides::Front && set.mode == shading::HitMode::Default;
-        const bool several = l.trace && (l.ownsTarget || !b_.rules_.pickOne) && l.samples > 1;
-        return !l.lights || (plain && !several);
-    });
-}
+void BlockVertices::runRequests(BatchContext& c, Sched& sched) { requested_->run(c, sched); }
 
-bool BlockVertices::runRequests(BatchContext& c, Sched& sched) { return requested_->run(c, sched); }
-
-bool BlockVertices::Requested::run(BatchContext& c, Sched& sched) {
-    if (requests_.lobes.empty() && !b_.flight_->on()) return true;
-    if (!takes(c)) return false;
+void BlockVertices::Requested::run(BatchContext& c, Sched& sched) {
+    if (requests_.lobes.empty() && !b_.flight_->on()) return;
     std::vector<AccumulatorId> targets = c.targets;
     for (const LobeVertex& l : requests_.lobes) targets[size_t(l.point)] = l.target;
     c.targets.swap(targets);
@@ -53,8 +33,6 @@ bool BlockVertices::Requested::run(BatchContext& c, Sched& sched) {
     if (b_.flight_->on() && !c.between && !c.below) b_.flight_->takeModels(c, false);
     b_.followLobes(c, sched);
     c.targets.swap(targets);
-    b_.counters_.inBlocks += b_.points_;
-    return true;
 }
 
 void BlockVertices::Requested::load(BatchContext& c) {
@@ -63,7 +41,7 @@ void BlockVertices::Requested::load(BatchContext& c) {
     b_.before_.assign(b_.waits_ ? b_.points_ : 0, 0);
     for (const LobeVertex& l : lobes_) {
         if (b_.waits_) b_.before_[size_t(l.point)] = l.before;
-        b_.several_ |= l.ownsTarget && l.samples > 1;
+        b_.sendsSeveral_ |= l.ownsTarget && l.samples > 1;
     }
     b_.loadVertices(c);
     take(c);
@@ -133,6 +111,8 @@ void BlockVertices::Requested::takeRequest(Site& s, const LobeVertex& l) {
                           l.rays->type != RayType::Diffuse || l.below >= 0;
     b.stays |= Lanes(l.directOnly || !indirect) << i;
     s.lights |= l.lights;
+    const shading::RaySet& set = l.rays->set;
+    s.sets |= l.trace && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default);
     if (l.occurrence > 0) {
         s.occurrence.resize(b_.points_);
         s.occurrence[size_t(l.point)] = l.occurrence;
@@ -168,10 +148,18 @@ void BlockVertices::Requested::examine(size_t b, BatchContext& c) {
         }
         TraceSums* const sums = l->trace->sums ? b_.accumulator_.sumsOf(l->target) : nullptr;
         if (!sums) continue;
-        const bool lamps = l->lights && (l->elsewhere || (b_.next_.single >> i & 1)); // light samples estimate the others
-        unshadowed_.add(c, *l, lamps, b_.originOf(s, point, w), w, throughputOf(i),
-                        l->trace->map ? l->tint * requests_.mapTowards(*l->trace, w, c.rays[point].footprint.spread) : Color(0),
-                        *sums);
+        UnshadowedRay ray;
+        ray.point = int(point);
+        ray.rays = l->rays;
+        ray.origin = b_.originOf(s, point, w);
+        ray.direction = w;
+        ray.maxDistance = l->maxDistance;
+        ray.bringsEmission = l->lights && (l->elsewhere || (b_.next_.single >> i & 1));
+        ray.lit = l->elsewhere ? l->from : c.points[point].P;
+        ray.told = b_.toldAt(point);
+        const float spread = c.rays[point].footprint.spread;
+        const Color environment = l->trace->map ? l->tint * requests_.mapTowards(*l->trace, w, spread) : Color(0);
+        unshadowed_.add(c, ray, throughputOf(i), environment, *sums);
     }
 }
 
@@ -223,7 +211,6 @@ void BlockVertices::Requested::drawAgain(const Site& s, size_t b, Lanes picked) 
 void BlockVertices::Requested::addToRay(const LobeVertex& l, RayExtra& extra, int i, const BatchContext& c) {
     const PathRay& from = c.rays[size_t(l.point)];
     const Vec3 w(b_.next_.direction[0][i], b_.next_.direction[1][i], b_.next_.direction[2][i]);
-    extra.lit = l.lit;
     if (l.trace && l.trace->map) extra.environment = l.tint * requests_.mapTowards(*l.trace, w, from.footprint.spread);
     if (!l.ownsTarget || !l.trace || !l.trace->sums) return;
     extra.part = Color(1.f / (float(l.samples) * b_.survived_[i]));

@@ -11,7 +11,7 @@ class BlockVertices::Requested {
 public:
     Requested(BlockVertices&, const StageSet&);
     /// BlockVertices::runRequests().
-    bool run(BatchContext&, Sched&);
+    void run(BatchContext&, Sched&);
     /// Fills the blocks with a batch's points and its requests, which it removes.
     void load(BatchContext&);
     /// The batch has none.
@@ -26,7 +26,6 @@ public:
     void addToRay(const LobeVertex&, RayExtra&, int lane, const BatchContext&);
 
 private:
-    bool takes(const BatchContext&) const;
     void take(BatchContext&);
     size_t siteOf(const LobeVertex&, size_t next, const BatchContext&);
     void takeRequest(Site&, const LobeVertex&);

@@ -1,4 +1,5 @@
 // Continuation rays of paths from vertices in blocks.
+#include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/blockflight.h"
 #include "integrator/blockguide.h"
@@ -20,7 +21,7 @@ namespace alpenglow::integrator {
 
 void BlockVertices::scatter(BatchContext& c, Sched& sched) {
     turn_ = 0;
-    if (!rules_.pickOne || several_) {
+    if (!rules_.pickOne || sendsSeveral_) {
         pairs_.resize(1);
         for (size_t b = 0; b < blocks_; ++b) scatterAll(b, c, sched);
         return;
@@ -124,6 +125,7 @@ void BlockVertices::throwDice(size_t b) {
         return;
     }
     render::NumberBlock& n = pairs_[0];
+    if (sendsSeveral_) beginNumbers(b, n); // directions had numbers of their own for each ray
     std::copy_n(next_.vertex, kBlock, n.vertex);
     std::fill_n(n.stream, kBlock, kRoulette << 1 | render::SampleNumbers::kSingle);
     std::fill_n(n.occurrence, kBlock, 0u);
@@ -134,18 +136,31 @@ void BlockVertices::throwDice(size_t b) {
 void BlockVertices::sendRays(size_t b, BatchContext& c, Sched& sched) {
     if (!requested_->empty()) requested_->examine(b, c);
     throwDice(b);
-    for (Lanes bad = stages_.extend(vertices_[b], waits_ ? Roulette::None : roulette_, next_); bad; bad &= bad - 1) {
+    const bool trees = rules_.roulette && !waits_ && endsTrees_;
+    for (Lanes bad = stages_.extend(vertices_[b], waits_ || trees ? Roulette::None : roulette_, next_); bad; bad &= bad - 1) {
         const int lane = std::countr_zero(bad);
         accumulator_.notFinite(c, c.rays[b * kBlock + size_t(lane)], uint32_t(sites_[size_t(next_.site[lane])].number));
     }
     std::fill_n(survived_, kBlock, 1.f);
     if (waits_ && rules_.roulette) endByChance(b);
+    if (trees) endTrees(b);
     walkBelow(b, c);
     if (!next_.goes) return;
     turnRays(b, c);
     applyOptions(b, c);
     keepLobes(b, c);
     spawn(rays_[b], sched);
+}
+
+/// Roulette by throughput where lights send rays, too: it ends the tree of rays.
+void BlockVertices::endTrees(size_t b) {
+    for (Lanes left = next_.goes; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        const auto leftOf = [&](int q) { return std::fabs(next_.weight[q][i]); };
+        const float q = rouletteLocal(vertices_[b].bounces[i] + 1, {leftOf(0), leftOf(1), leftOf(2)}, next_.dice[i]);
+        if (!(q > 0)) next_.goes &= ~(1u << i);
+        for (int k = 0; k < 3; ++k) next_.weight[k][i] = next_.weight[k][i] / q;
+    }
 }
 
 /// Moves the rays of a block on from its vertices.
@@ -199,7 +214,7 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
         const bool sampled = s.lightsAt(b * kBlock + size_t(i)) &&
                              !((next_.single | s.lobes[b].elsewhere) >> i & 1); // then emission that it hits is weighted by MIS
-        r.pdf[i] = sampled ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
+        r.pdf[i] = sampled && rules_.lightsAtRequests ? next_.pdf[i] * s.lobes[b].chosen[i] : -1;
         r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
         if (const uint16_t path = uint16_t(r.path[i])) {
             const Vec3 w(next_.direction[0][i], next_.direction[1][i], next_.direction[2][i]);
@@ -217,8 +232,10 @@ void BlockVertices::keepLobes(size_t b, BatchContext& c) {
                                    ? 1
                                    : (next_.indirect[i] == 0 ? 1 : v.energyScale[i]) * indirectOf(s, point);
         const bool fades = !s.options.empty() && s.options[b * kBlock + size_t(i)].fade.fades();
-        if (indirect == 1 && share < 0 && !c.between && !fades && !request) continue;
+        const int lit = toldAt(point);
+        if (indirect == 1 && share < 0 && !c.between && !fades && lit < 0 && !request) continue;
         RayExtra extra;
+        extra.lit = lit;
         if (fades) extra.fade = s.options[b * kBlock + size_t(i)].fade;
         if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];
         extra.indirect = indirect;

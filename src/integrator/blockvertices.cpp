@@ -15,44 +15,27 @@
 #include "integrator/vertexlight.h"
 #include "services/random.h"
 #include "world/blocksite.h"
-#include "world/emitterfootprint.h"
 #include <algorithm>
 #include <bit>
 
 namespace alpenglow::integrator {
 
-namespace {
-Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
-
-/// Whether blocks support a light: one that queries no surface and has no further outputs. chosen: it is one of many, of which
-/// each point samples a few.
-bool isPlainLight(const BoundLight& l, bool chosen) {
-    return !l.asksSurface && !l.channels && l.sentCl < 0 && !(chosen && isWide(l));
-}
-} // namespace
+static Lanes firstPoints(size_t n) { return n >= size_t(kBlock) ? 0xffffu : (1u << n) - 1; }
 
 BlockVertices::BlockVertices(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), batches_(s.batches), inputs_(s.inputs), lastSkies_(s.lastSkies),
-      lightKernels_(s.lightKernels), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents), occlusion_(s.occlusion),
-      photons_(s.photons), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface), surfaces_(s.surfaces),
-      vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
+      lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), paths_(s.paths), media_(s.media), mediumEvents_(s.mediumEvents),
+      occlusion_(s.occlusion), photons_(s.photons), store_(s.store), shadows_(s.shadows), subsurface_(s.subsurface),
+      surfaces_(s.surfaces), vertexLight_(s.vertexLight), stages_(stages()), lanes_(lobeLanes(lobeWidth())) {
     const Settings& set = world_.settings_;
     if (rules_.roulette) roulette_ = set.localRoulette ? Roulette::Local : Roulette::Throughput;
-    const bool rules = rules_.lightsAtRequests && !set.lightOnly && set.indirect;
-    const bool lights = !world_.lightsAsk() && world_.lightTraces_ == 0 && !world_.lightChannels_;
-    usable_ = set.blocks && rules && lights;
-    usable_ &= world_.accel_ != nullptr; // requires a complete world
+    endsTrees_ = !set.localRoulette && world_.lightTraces_ > 0;
     noSample_ = &store_.noSample;
     guided_ = std::make_unique<Guided>(*this, s.guide);
     requested_ = std::make_unique<Requested>(*this, s);
     gathered_ = std::make_unique<Photons>(*this, s);
     flight_ = std::make_unique<Flight>(*this, s);
-    if (!usable_) return;
-    for (const WorldImpl::LightList& list : world_.lightLists_)
-        plain_.push_back(!list.ofAll && std::all_of(list.sampled.begin(), list.sampled.end(), [&](int l) {
-            const BoundLight& light = world_.lights_[size_t(l)];
-            return isPlainLight(light, !list.chooser.empty()) && !(light.hazy && !world_.media_.empty());
-        }));
+    if (!world_.accel_) return; // not a complete world
     for (const BoundLight& l : world_.lights_) inRows_.push_back(inRows(l, l.kernel));
     chosen_ = std::make_unique<ChosenLights>(*this);
 }
@@ -60,8 +43,9 @@ BlockVertices::BlockVertices(const StageSet& s)
 BlockVertices::~BlockVertices() = default;
 
 bool BlockVertices::takesRays(const BatchContext& c) const {
-    return std::none_of(c.rays.begin(), c.rays.end(),
-                        [&](const PathRay& r) { return r.quiet || r.scattered >= limits::kPathDepth; });
+    return world_.settings_.rowRequests && std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
+               return r.quiet || r.scattered >= limits::kPathDepth;
+           });
 }
 
 /// Whether blocks can process all lobes that the kernel has requested at the points of the batch, with a weight that is not 0.
@@ -87,12 +71,11 @@ static bool tracesSets(const WorldImpl& w, const BoundKernel& kernel) {
 
 bool BlockVertices::takes(const BatchContext& c) const {
     if (!asksBlocks(c) || c.aside || c.between || c.below || tracesSets(world_, *c.bound)) return false;
-    if (flight_->on()) return flight_->fits(c);
-    return usable_ && plain_[size_t(c.binding->lightList)] && takesRays(c);
+    return takesRays(c);
 }
 
-bool BlockVertices::takes(const SurfaceBinding& b, const BoundKernel& kernel) const {
-    return usable_ && rules_.pickOne && kernel.blocks && plain_[size_t(b.lightList)] && !tracesSets(world_, kernel);
+bool BlockVertices::takes(const BoundKernel& kernel) const {
+    return world_.settings_.rowRequests && rules_.pickOne && kernel.blocks && !tracesSets(world_, kernel);
 }
 
 bool BlockVertices::run(BatchContext& c, Sched& sched) { return (c.emits.empty() && !flight_->on()) || follow(c, sched, false); }
@@ -105,14 +88,12 @@ bool BlockVertices::follow(BatchContext& c, Sched& sched, bool waits) {
     return true;
 }
 
-bool BlockVertices::runModels(BatchContext& c, Sched& sched) {
-    if (!flight_->fits(c)) return false;
+void BlockVertices::runModels(BatchContext& c, Sched& sched) {
     begin(c, false);
     count_ = 0;
     loadVertices(c);
     flight_->takeModels(c, true);
     followLobes(c, sched);
-    return true;
 }
 
 void BlockVertices::begin(const BatchContext& c, bool waits) {
@@ -120,9 +101,13 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
     indirect_ = {};
     apart_.clear();
     loops_.clear();
-    repeats_ = several_ = false;
+    repeats_ = sendsSeveral_ = several_ = checksHits_ = false;
     moved_ = nullptr;
     requested_->clear();
+    told_.clear();
+    given_.clear();
+    onlySite_ = -1;
+    draw_ = 0;
     ignored_ = 0;
     points_ = c.rays.size();
     blocks_ = (points_ + kBlock - 1) / kBlock;
@@ -133,14 +118,15 @@ void BlockVertices::begin(const BatchContext& c, bool waits) {
 void BlockVertices::followLobes(BatchContext& c, Sched& sched) {
     prepare();
     if (flight_->on()) return flight_->follow(c, sched);
+    if (world_.lightsAsk()) tellLights(c);
     gathered_->mark(c);
     select(c);
     counters_.ignored += ignored_;
     if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
     if (world_.settings_.firstSeen && !waits_ && !c.between) showAlbedo(c);
     lightDirections(c);
-    light(c);
-    if (lastSkies_.any()) lastSkies(c);
+    light(c, sched);
+    if (rules_.emissionCounts && lastSkies_.any()) lastSkies(c);
     guided_->run(c, sched);
     gathered_->take(c, sched);
     scatter(c, sched);
@@ -272,7 +258,15 @@ bool BlockVertices::findSites(const BatchContext& c) {
 }
 
 /// Whether arguments of a call are read point by point.
-static bool readsRows(const BlockLobes& s) { return s.walks || s.info->kind == SiteKind::Trace; }
+static bool readsRows(const BlockLobes& s) {
+    return s.walks || s.info->kind == SiteKind::Trace || !s.info->outputs.empty(); // outputs: lights query them
+}
+
+/// Whether the rays of a trace() hit other surfaces, or other sides, than rays of lighting shadeops.
+static bool hasRaySet(const BlockLobes& s) {
+    const shading::RaySet& set = s.rays->set;
+    return !s.lighting && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default);
+}
 
 void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.number = number;
@@ -290,6 +284,7 @@ void BlockVertices::beginSite(Site& s, int number, const BatchContext& c) {
     s.walks = s.info->kind == SiteKind::Subsurface;
     s.apart = s.info->kind == SiteKind::Trace && s.info->trace->apart;
     s.direct = s.info->kind == SiteKind::Diffuse && s.info->trace && s.info->trace->apart;
+    s.sets = hasRaySet(s);
     s.rows.assign(readsRows(s) ? blocks_ : 0, nullptr);
 }
 
@@ -392,6 +387,10 @@ void BlockVertices::select(const BatchContext& c) {
     for (size_t k = 0; k < count_; ++k) of[k] = {sites_[k].lighting, sites_[k].diffuse, sites_[k].walks};
     // Sums of outputs need not conserve energy.
     const SelectRules rules{of.data(), world_.settings_.unbiased || c.aside, !rules_.pickOne};
+    for (size_t k = 0; k < count_; ++k) {
+        const bool still = (!world_.settings_.indirect && sites_[k].diffuse) || (c.below && !rules_.pickOne);
+        for (size_t b = 0; b < blocks_ && still && !sites_[k].walks; ++b) sites_[k].lobes[b].stays = ~Lanes(0);
+    }
     for (size_t b = 0; b < blocks_; ++b) {
         const Selected found = stages_.select(vertices_[b], lobesOf(b).data(), int(count_), rules);
         counters_.depthCap += uint64_t(std::popcount(found.cut & vertices_[b].points));

@@ -12,9 +12,8 @@ namespace alpenglow::integrator {
 
 /// Whether the strips of a batch all make the same first request, for one ray each, at nearly all points of the batch.
 bool BlockVertices::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
-    const SurfaceBinding& b = *c.binding;
-    if (!usable_ || world_.traceSubsets_ || !plain_[size_t(b.lightList)] || c.aside || c.between || c.below || !c.clear.empty() ||
-        c.points.empty() || photons_.photonTrace() || !takesRays(c))
+    if (world_.traceSubsets_ || c.aside || c.between || c.below || !c.clear.empty() || c.points.empty() ||
+        photons_.photonTrace() || !takesRays(c))
         return false;
     size_t asked = 0;
     for (const KernelStrip* s : strips) {
@@ -58,7 +57,7 @@ bool BlockVertices::run(BatchContext& c, std::span<KernelStrip* const> strips, S
     if (!done) return false;
     for (KernelStrip* s : strips) {
         uint64_t lobes = 0;
-        counters_.inBlocks += s->request().memory->laneOf.size();
+        counters_.inRows += s->request().memory->laneOf.size();
         for (int lane = 0; lane < s->request().lanes; ++lane) {
             const size_t point = size_t(s->request().first + lane);
             if (point < points_ && count_ > 0)

@@ -8,8 +8,10 @@
 #include "integrator/lightpathstates.h"
 #include "integrator/lightsample.h"
 #include "integrator/medium.h"
+#include "integrator/ownshadows.h"
 #include "integrator/shadowrays.h"
 #include "integrator/surfacepoints.h"
+#include "world/emitterfootprint.h"
 #include <algorithm>
 #include <bit>
 
@@ -20,6 +22,7 @@ BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
     for (const WorldImpl::LightGroup& g : world_.lightGroups_)
         for (int k = 0; k < 4; ++k) all_.push_back({&g.kernel, (k & 1) != 0, {}});
     for (const BoundLight& l : world_.lights_) {
+        wide_.push_back(isWide(l));
         together_.push_back(togetherOf(l));
         origins_.push_back(l.instance ? originOfLight(*l.instance, 0) : Vec3()); // none: the shader was rejected
     }
@@ -28,18 +31,21 @@ BlockVertices::ChosenLights::ChosenLights(BlockVertices& b)
 /// Index of the lights that share a kernel, all of them with a density or without, and sampled in rows or not.
 int BlockVertices::ChosenLights::togetherOf(const BoundLight& l) const {
     if (l.group < 0) return -1;
-    return 4 * l.group + 2 * int(l.hasDensity()) + int(b_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel));
+    const bool rows = !isWide(l) && b_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel);
+    return 4 * l.group + 2 * int(l.hasDensity()) + int(rows);
 }
 
-void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchContext& c) {
+void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchContext& c, Sched& sched) {
+    const std::vector<int>& on = world_.sampledOf(list);
+    for (Together& t : all_) t.asked.clear(); // of a call that ended early
     choose(list);
-    for (size_t k = 0; k < list.sampled.size(); ++k) {
-        if (begin_[k] == begin_[k + 1]) continue;
-        const int number = list.sampled[k];
+    for (size_t k = 0; k < on.size(); ++k) {
+        const int number = on[k];
+        if (begin_[k] == begin_[k + 1] || (list.ofAll && !list.lights.contains(number))) continue;
         if (!world_.lights_[size_t(number)].importance) continue; // only rays find it
         const auto asked = std::span(sorted_).subspan(begin_[k], begin_[k + 1] - begin_[k]);
         if (together_[size_t(number)] < 0) {
-            askByPoints(nullptr, asked, c);
+            ask(nullptr, false, asked, c, sched);
             continue;
         }
         std::vector<Asked>& of = all_[size_t(together_[size_t(number)])].asked;
@@ -49,19 +55,37 @@ void BlockVertices::ChosenLights::light(const WorldImpl::LightList& list, BatchC
         constexpr size_t kMost = kAtOnce * kBlock;
         for (size_t first = 0; first < t.asked.size(); first += kMost) {
             const auto some = std::span(t.asked).subspan(first, std::min(kMost, t.asked.size() - first));
-            if (t.rows) askInRows(*t.kernel, some, c);
-            else askByPoints(t.kernel, some, c);
+            ask(t.kernel, t.rows, some, c, sched);
         }
         t.asked.clear();
     }
+}
+
+/// Samples lights, as often as the points want. group: the kernel that they share; null: a single light.
+void BlockVertices::ChosenLights::ask(const BoundKernel* group, bool rows, std::span<const Asked> asked, BatchContext& c,
+                                      Sched& sched) {
+    for (b_.draw_ = 0; !asked.empty(); ++b_.draw_) {
+        b_.checksHits_ = b_.checksHits(world_.lights_[size_t(asked[0].light)]);
+        if (rows && !b_.checksHits_) askInRows(*group, asked, c);
+        else askByPoints(group, asked, c);
+        if (b_.shadows_.queue.size() > kShadowsAtOnce) b_.shadows_.flush(sched);
+        if (!b_.several_) break;
+        std::vector<Asked> again;
+        for (const Asked& a : asked)
+            if (b_.draw_ + 1 < uint32_t(b_.drawsOf(world_.lights_[size_t(a.light)], size_t(a.point)))) again.push_back(a);
+        again_.swap(again);
+        asked = again_;
+    }
+    b_.draw_ = 0;
 }
 
 /// Chooses the lights of each point, as indices in the list.
 void BlockVertices::ChosenLights::choose(const WorldImpl::LightList& list) {
     b_.drawNumbers(kChooseLight << 1 | render::SampleNumbers::kSingle, b_.choices_);
     chosen_.clear();
-    begin_.assign(list.sampled.size() + 1, 0);
-    const LightTree first = list.chooser.tree(), deeper = list.deeper.tree();
+    const std::vector<int>& on = world_.sampledOf(list);
+    begin_.assign(on.size() + 1, 0);
+    const LightTree first = world_.chooserAt(list, 0).tree(), deeper = world_.chooserAt(list, 1).tree();
     for (size_t b = 0; b < b_.blocks_; ++b) {
         const VertexBlock& v = b_.vertices_[b];
         Lanes begins = 0;
@@ -78,7 +102,7 @@ void BlockVertices::ChosenLights::choose(const WorldImpl::LightList& list) {
     size_t sum = 0;
     for (size_t& n : begin_) sum += std::exchange(n, sum);
     sorted_.resize(chosen_.size());
-    for (const Asked& a : chosen_) sorted_[begin_[size_t(a.light)]++] = {list.sampled[size_t(a.light)], a.point, a.chance};
+    for (const Asked& a : chosen_) sorted_[begin_[size_t(a.light)]++] = {on[size_t(a.light)], a.point, a.chance};
     for (size_t k = begin_.size() - 1; k > 0; --k) begin_[k] = begin_[k - 1];
     begin_[0] = 0;
 }
@@ -96,20 +120,27 @@ void BlockVertices::ChosenLights::askInRows(const BoundKernel& kernel, std::span
     b_.batches_.giveBack(std::move(call));
 }
 
-/// The same where light samples need points. group: the kernel that the lights share; null: a single light.
+/// The same where light samples need points. group: the kernel that the lights share; null: a single light. Lights that filter
+/// over their surface are asked for one call site after the other: their lobes differ in width.
 void BlockVertices::ChosenLights::askByPoints(const BoundKernel* group, std::span<const Asked> asked, BatchContext& c) {
     gatherPoints(asked);
     drawNumbers();
     b_.surfaces_.pointsOfRows(c);
+    if (std::none_of(asked.begin(), asked.end(), [&](const Asked& a) { return wide_[size_t(a.light)] != 0; }))
+        return askOnce(group, c);
+    for (size_t k = 0; k < b_.count_; ++k) {
+        b_.onlySite_ = int(k);
+        askOnce(group, c);
+    }
+    b_.onlySite_ = -1;
+}
+
+void BlockVertices::ChosenLights::askOnce(const BoundKernel* group, BatchContext& c) {
     placeQueries(c);
     if (of_.empty()) return;
     std::vector<const BoundLight*> lights;
     for (const auto& [k, lane] : of_) lights.push_back(&world_.lights_[size_t(blocks_[k].asked[lane]->light)]);
-    LightCall call;
-    call.kernel = group;
-    if (group) call.of = lights;
-    b_.values_.assign(of_.size(), {});
-    b_.lightKernels_.evaluateLight(*lights[0], b_.queries_, b_.values_, call);
+    b_.askQueries(*lights[0], group, lights, c);
     for (size_t n = 0; n < of_.size(); ++n) {
         const auto& [k, lane] = of_[n];
         Questions& q = blocks_[k];
@@ -117,7 +148,7 @@ void BlockVertices::ChosenLights::askByPoints(const BoundKernel* group, std::spa
         if (v.lit && !isFinite(v.Cl)) {
             b_.accumulator_.notFinite(&c.rays[size_t(q.asked[lane]->point)], "Cl", lights[n]->instance.get());
         } else if (v.lit && v.Cl != Color(0)) {
-            BlockVertices::takeValue(q.lights, lane, *lights[n], v, b_.queries_[n], samples_[n]);
+            BlockVertices::takeValue(q.lights, lane, *lights[n], v, b_.queries_[n], b_.asked_[n].sample);
             q.lights.density[lane] *= q.asked[lane]->chance;
             q.says[lane] = int32_t(n);
         }
@@ -126,28 +157,40 @@ void BlockVertices::ChosenLights::askByPoints(const BoundKernel* group, std::spa
         if (blocks_[k].lights.asked) connect(blocks_[k], c);
 }
 
-/// Makes points on the lights one by one: BlockVertices::queries_.
+/// Makes points on the lights one by one: BlockVertices::queries_ and asked_.
 void BlockVertices::ChosenLights::placeQueries(const BatchContext& c) {
     std::vector<ShadePoint>& queries = b_.queries_;
-    samples_.clear();
+    std::vector<BlockQuery>& asked = b_.asked_;
+    const BlockVertices::Site* const only = b_.onlySite_ < 0 ? nullptr : &b_.sites_[size_t(b_.onlySite_)];
+    asked.clear();
     of_.clear();
     for (size_t k = 0; k < count_; ++k) {
         Questions& q = blocks_[k];
         const BoundLight& first = world_.lights_[size_t(q.asked[0]->light)];
         q.lights.emitter = first.kind == LightKind::Area;
         q.lights.met = first.hasDensity();
+        q.lights.asked = q.lights.metDiffuse = q.lights.metSpecular = 0;
         for (Lanes left = q.there; left; left &= left - 1) {
             const int lane = std::countr_zero(left);
+            const size_t point = size_t(q.asked[lane]->point);
             const BoundLight& light = world_.lights_[size_t(q.asked[lane]->light)];
+            if (only && !(b_.lightsAt(*only, light, point) && b_.draw_ < uint32_t(b_.drawsOf(*only, point)))) continue;
             const LightNumbers u{{pairs_[k].x[lane], pairs_[k].y[lane]}, choices_.empty() ? 0 : choices_[k].x[lane]};
-            if (of_.size() == queries.size()) queries.emplace_back(); // earlier queries are overwritten
-            samples_.emplace_back();
-            if (b_.placeQuery(light, nullptr, u, c.points[size_t(q.asked[lane]->point)], queries[of_.size()], samples_.back()))
-                of_.emplace_back(k, lane);
-            else samples_.pop_back();
+            if (asked.size() == queries.size()) queries.emplace_back(); // earlier queries are overwritten
+            ShadePoint& at = queries[asked.size()];
+            BlockQuery& a = asked.emplace_back();
+            a.point = int(point);
+            if (!b_.placeQuery(light, nullptr, u, c.points[point], at, a.sample)) {
+                asked.pop_back();
+                continue;
+            }
+            of_.emplace_back(k, lane);
+            if (only && light.kind == LightKind::Area)
+                setEmitterFootprint(at, c.rays[point], c.points[point].P,
+                                    spreadBehind(c.rays[point], only->lobes[point / kBlock].lobe[kRowSpread][point % kBlock]));
         }
     }
-    queries.resize(of_.size());
+    queries.resize(asked.size());
 }
 
 /// Copies the points of the light samples into rows; the last one repeats if a block is not full.
@@ -178,7 +221,12 @@ void BlockVertices::ChosenLights::gatherPoints(std::span<const Asked> asked) {
             numbers.low[i] = v.low[at];
             numbers.high[i] = v.high[at];
             numbers.index[i] = v.index[at];
-            numbers.vertex[i] = v.lightVertex[at];
+            const BoundLight& light = world_.lights_[size_t(a.light)];
+            if (b_.several_)
+                b_.nameDraw(b_.rays_[size_t(a.point / kBlock)], int(at), uint32_t(b_.drawsOf(light, size_t(a.point))), numbers,
+                            int(i));
+            const bool placed = light.kind == LightKind::Area || light.isSky();
+            numbers.vertex[i] = placed ? v.lightVertex[at] : v.vertex[at];
             numbers.stream[i] = (kLightPoint + uint32_t(a.light)) << 1;
             numbers.occurrence[i] = 0;
         }
@@ -330,7 +378,8 @@ Lanes BlockVertices::ChosenLights::gatherLobes(const Questions& q, const BlockVe
         for (int r = 0; r < 3; ++r) lobe_.weight[r][i] = l.weight[r][at];
         lobe_.chosen[i] = l.chosen[at];
         const BoundLight& light = world_.lights_[size_t(a.light)];
-        const bool samples = ((l.lights & ~b_.gathered_->bring(l, light)) >> at & 1) && BlockVertices::samples(s, light);
+        const bool samples = ((l.lights & ~b_.gathered_->bring(l, light)) >> at & 1) && b_.samples(s, light) &&
+                             (b_.draw_ == 0 || b_.draw_ < uint32_t(b_.drawsOf(s, size_t(a.point))));
         asked |= Lanes(samples) << i;
     }
     lobe_.asked = lobe_.lights = asked & q.lights.asked;
@@ -356,23 +405,32 @@ void BlockVertices::ChosenLights::connect(Questions& q, BatchContext& c) {
     b.stages_.aim(q.points, q.lights, b.shadow_);
     std::fill_n(b.sent_, kBlock, -1);
     size_t points[kBlock] = {};
-    for (int i = 0; i < kBlock; ++i)
+    const BoundLight* lights[kBlock];
+    for (int i = 0; i < kBlock; ++i) {
         if (q.there >> i & 1) points[i] = size_t(q.asked[i]->point);
+        lights[i] = &world_.lights_[size_t(q.asked[i]->light)];
+    }
     q.lights.parted = c.between;
     for (Lanes left = c.between ? q.there & q.lights.asked : 0; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         q.lights.part[i] = b.mediumEvents_.shareOfDistance(c.flown[points[i]], world_.lights_[size_t(q.asked[i]->light)]);
     }
+    const Lanes placed = q.lights.asked;
     for (size_t k = 0; k < b.count_; ++k) {
         const BlockVertices::Site& s = b.sites_[k];
-        const Lanes asked = s.lights ? gatherLobes(q, s) : 0;
-        if (!asked) continue;
+        if (b.onlySite_ >= 0 && b.onlySite_ != int(k)) continue;
+        q.lights.asked = placed;
+        q.lights.asked = s.lights ? gatherLobes(q, s) : 0;
+        if (!q.lights.asked) continue;
+        OwnShadows own(b, s);
+        own.limit(s, points, lights, q.says, q.lights);
+        const Lanes asked = lobe_.lights = q.lights.asked;
         s.lanes->evaluate(lobe_.lobe[0], asked, q.lights.w[0], b.value_[0]);
         for (Lanes some = b.contribute(s, q.points, lobe_, q.lights, c, points); some; some &= some - 1) {
             const int i = std::countr_zero(some);
             const LightValue* says = q.says[i] < 0 ? nullptr : &b.values_[size_t(q.says[i])];
             const Vec3 w(q.lights.w[0][i], q.lights.w[1][i], q.lights.w[2][i]);
-            b.sendShadow(s, points[i], size_t(i), w, world_.lights_[size_t(q.asked[i]->light)], says, c);
+            b.sendShadow(s, points[i], size_t(i), w, *lights[i], says, c);
         }
     }
 }

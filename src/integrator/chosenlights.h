@@ -1,5 +1,5 @@
 // Scenes with many lights: each point samples some lights at random (world/lightchooser.h), for vertices in blocks
-// (blockvertices.h). Samples of lights with the same kernel share blocks, one sample a lane. Same bits as vertexsampling.h.
+// (blockvertices.h). Samples of lights with the same kernel share blocks, one sample a lane.
 #pragma once
 #include "integrator/blockvertices.h"
 
@@ -9,7 +9,7 @@ class BlockVertices::ChosenLights {
 public:
     explicit ChosenLights(BlockVertices&);
     /// Lights the points of a batch that BlockVertices::lit_ marks. Leaves shadow rays in ShadowRays::queue.
-    void light(const WorldImpl::LightList&, BatchContext&);
+    void light(const WorldImpl::LightList&, BatchContext&, Sched&);
 
 private:
     static constexpr size_t kAtOnce = 32; ///< blocks processed at once: they fit into the cache of a core
@@ -37,9 +37,11 @@ private:
 
     int togetherOf(const BoundLight&) const;
     void choose(const WorldImpl::LightList&);
+    void ask(const BoundKernel* group, bool rows, std::span<const Asked>, BatchContext&, Sched&);
     void askInRows(const BoundKernel&, std::span<const Asked>, BatchContext&);
     void askByPoints(const BoundKernel* group, std::span<const Asked>, BatchContext&);
     void gatherPoints(std::span<const Asked>);
+    void askOnce(const BoundKernel* group, BatchContext&);
     void placeQueries(const BatchContext&);
     void drawNumbers();
     void placeOnEmitters(size_t block);
@@ -64,8 +66,9 @@ private:
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_;
     std::vector<ChosenLight> chosenHere_;    ///< for one block
-    std::vector<Emitter::Sample> samples_;   ///< for BlockVertices::queries_
-    std::vector<std::pair<size_t, int>> of_; ///< block and lane of each of these
+    std::vector<std::pair<size_t, int>> of_; ///< by BlockVertices::asked_: block and lane
+    std::vector<char> wide_;                 ///< by light: it filters over its surface (isWide())
+    std::vector<Asked> again_;               ///< those that take further samples
     LobeBlock lobe_;
 };
 

@@ -1,17 +1,14 @@
 // Light-directed sampling for surfaces in media (lightdirected.h): selects the light and its share of a lobe's samples.
 #include "integrator/lightdirected.h"
 #include "bsdf/sampling.h"
-#include "integrator/lobeselection.h"
 #include "integrator/mediastacks.h"
 #include "integrator/medium.h"
-#include "integrator/photonstage.h"
-#include "integrator/requests.h"
 
 namespace alpenglow::integrator {
 
 namespace {
 constexpr float kMostLightDirected = 0.3f; ///< largest share of a lobe's samples
-constexpr float kHalfShare = 0.2f;         ///< optical distance to the light at which the share is half of that
+constexpr float kHalfwayThick = 0.2f;      ///< optical distance to the light at which the share is half of that
 } // namespace
 
 float LightDirected::density(const Vec3& w, float ofLobe) const {
@@ -49,34 +46,9 @@ LightDirected MediumEvents::atSurfaceInMedium(const KernelRun& c, size_t point) 
         const Vec3 to = lightDirection(m, ray, p.P, &away);
         if (!(dot(to, side) > 0)) continue;
         const float thick = away * mean(m.homogeneous->scattering); // small where little is scattered on the way
-        return {to, kMostLightDirected * thick / (thick + kHalfShare)};
+        return {to, kMostLightDirected * thick / (thick + kHalfwayThick)};
     }
     return {};
-}
-
-void LobeSelection::lightDirections() {
-    if (!mediumEvents_.surfacesAim() || c_->between || photons_.photonTrace()) return;
-    aimed_.clear();
-    for (size_t point = 0; point < c_->points.size(); ++point)
-        if (begin_[point] != begin_[point + 1]) lightDirection(point);
-    if (aimed_.empty()) return;
-    for (int i : aimed_) requests_.rows.ask(requests_.lobes[size_t(i)].place, requests_.lobes[size_t(i)].beside.light);
-    requests_.rows.evaluate();
-    for (int i : aimed_) requests_.lobes[size_t(i)].beside.weigh(requests_.rows.value(requests_.lobes[size_t(i)].place));
-}
-
-void LobeSelection::lightDirection(size_t point) {
-    const LightDirected beside = mediumEvents_.atSurfaceInMedium(*c_, point);
-    if (!(beside.share > 0)) return;
-    for (int i : lobesOf(point)) {
-        LobeVertex& l = requests_.lobes[size_t(i)];
-        // A waiting kernel reads distances and directions of its rays, which must follow the density of the lobe alone.
-        if (l.delta || !l.followed || !(l.chosen > 0) || l.ownsTarget || l.elsewhere || l.below >= 0 ||
-            (l.trace && l.trace->onlyLights))
-            continue;
-        l.beside = beside;
-        aimed_.push_back(i);
-    }
 }
 
 } // namespace alpenglow::integrator

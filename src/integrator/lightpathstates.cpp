@@ -44,11 +44,6 @@ LightPathStates::LightPathStates(const StageSet& s) : Stage(s.context) {
     ambientLabel = labelOf("ambient");
 }
 
-uint16_t LightPathStates::atLobe(const LobeVertex& l, const ShadePoint& p, const PathRay& ray, const Vec3& w) const {
-    // Results of a waiting kernel's requests are inputs of the kernel; only its output is light of the path.
-    return l.ownsTarget ? 0 : atLobe(*l.kind, *l.rays, l.delta, p, ray, w);
-}
-
 uint16_t LightPathStates::atLobe(const LobeKind& kind, const RayKind& rays, bool delta, const ShadePoint& p, const PathRay& ray,
                                  const Vec3& w) const {
     if (ray.path == 0) return 0;

@@ -15,7 +15,6 @@ public:
     /// State after scattering by a loop over lights, or by ambient(), with this label, toward w.
     uint16_t atLoop(const ShadePoint&, const PathRay&, const Vec3& w, int label) const;
     /// After scattering toward w, unit
-    uint16_t atLobe(const LobeVertex&, const ShadePoint&, const PathRay&, const Vec3& w) const;
     uint16_t atLobe(const LobeKind&, const RayKind&, bool delta, const ShadePoint&, const PathRay&, const Vec3& w) const;
     uint16_t atLight(uint16_t path, const BoundLight& l) const {
         return path ? automaton->next(path, lights[size_t(&l - world_.lights_.data())]) : 0;

@@ -8,6 +8,19 @@ namespace alpenglow::integrator {
 
 struct StageSet;
 
+/// Values of a point that lights may query, from a call there. f(row): a number of the call's arguments.
+template <class Row> LitValues litValuesOf(const BatchContext& c, const SiteInfo& s, int point, const Row& f) {
+    LitValues told;
+    told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray has none
+    told.displaced = c.displaced;
+    told.point = point;
+    for (const SiteInfo::Output& o : s.outputs) {
+        auto& of = told.outputs.emplace_back(&o, std::vector<float>());
+        for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
+    }
+    return told;
+}
+
 class LitSurfaces final : Stage {
 public:
     explicit LitSurfaces(const StageSet&);

@@ -264,26 +264,8 @@ void MediumEvents::scatter(std::span<RaySegment> segmentEvents, std::span<const 
 
 /// Gathers light at points in a medium. lights_: by point, lightDirection().
 void MediumEvents::gather(BatchContext& c, const Medium& m, Sched& sched) {
-    static const LobeKind *const plain = findLobe("henyey-greenstein"), *const beside = findLobe("henyey-greenstein-beside");
     if (blocks_.needsPoints(*c.binding)) placePoints(c, m);
-    if (blocks_.run(c, *m.homogeneous, lights_, sched)) return;
-    if (c.points.empty()) placePoints(c, m);
-    for (size_t i = 0; i < c.rays.size(); ++i) {
-        const PathRay& r = c.rays[i];
-        LobeVertex& l = requests_.lobes.emplace_back();
-        const Vec3& light = lights_[i];
-        l.kind = light == Vec3(0) ? plain : beside;
-        l.point = int(i);
-        l.weight = Color(1);
-        l.target = c.targets[i];
-        l.site = kSegmentEvent;
-        if (world_.lightsAsk()) {
-            l.lit = int(litSurfaces_.values.size());
-            litSurfaces_.values.emplace_back();
-        }
-        l.place = requests_.rows.add(*l.kind, {r.dir, light == Vec3(0) ? -r.dir : light, {}, m.homogeneous->anisotropy});
-    }
-    vertexLight_.gather(c, sched);
+    blocks_.run(c, *m.homogeneous, lights_, sched);
 }
 
 void MediumEvents::placePoints(BatchContext& c, const Medium& m) const {

@@ -9,12 +9,9 @@
 #include "integrator/photonjob.h"
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
-#include "integrator/requests.h"
 #include "integrator/stageset.h"
 #include "integrator/surfaceshading.h"
 #include "integrator/transparency.h"
-#include "integrator/vertexlight.h"
-#include "integrator/vertexsampling.h"
 #include "shadeops/specular.h"
 #include "world/mediaabout.h"
 #include <algorithm>
@@ -28,7 +25,7 @@ PhotonTrace& PhotonStage::begin() {
 
 PhotonStage::PhotonStage(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), blocks_(s.blocks), paths_(s.paths), media_(s.media), store_(s.store),
-      requests_(s.requests), shading_(s.shading), transparency_(s.transparency), vertexLight_(s.vertexLight) {}
+      shading_(s.shading), transparency_(s.transparency) {}
 
 namespace {
 
@@ -85,32 +82,6 @@ int PhotonStage::lobesOfModel(PhotonModel model, const ShadePoint& p, const Colo
     return count;
 }
 
-void PhotonStage::takeModels(BatchContext& c, bool all) {
-    std::erase_if(requests_.lobes, [&](const LobeVertex& l) { return modelAt(c, size_t(l.point), all) != PhotonModel::Shader; });
-    for (size_t i = 0; i < c.points.size(); ++i) {
-        const PhotonModel model = modelAt(c, i, all);
-        if (model == PhotonModel::Shader) continue;
-        ModelLobe lobes[kModelLobes];
-        const int count = lobesOfModel(model, c.points[i], world_.bindings_[size_t(c.bindings[i])].attributes->color, lobes);
-        for (int k = 0; k < count; ++k) {
-            const ModelLobe& m = lobes[k];
-            LobeVertex& l = requests_.lobes.emplace_back();
-            LobeParams params;
-            params.axis = m.axis;
-            params.wo = -normalize(c.points[i].I);
-            params.a = m.a;
-            l.point = int(i);
-            l.kind = m.kind;
-            l.weight = m.weight;
-            l.target = c.targets[i];
-            l.rays = m.rays;
-            l.lights = l.deltaLights = false;
-            l.site = kModelSite + uint32_t(k);
-            l.place = requests_.rows.add(*m.kind, params);
-        }
-    }
-}
-
 void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
     const size_t n = c.points.size();
     for (size_t i = 0; i < n; ++i) {
@@ -137,10 +108,7 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
                          : Color(std::clamp(1 - o.x, 0.f, 1.f), std::clamp(1 - o.y, 0.f, 1.f), std::clamp(1 - o.z, 0.f, 1.f));
         c.clear[i] = c.clear[i] * transparency_.leftBehind(c, int(i));
     }
-    if (!blocks_.runModels(c, sched)) {
-        takeModels(c, true);
-        vertexLight_.gather(c, sched);
-    }
+    blocks_.runModels(c, sched);
     for (size_t i = 0; i < n; ++i)
         if (const Color clear = transparency_.goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
             transparency_.continueBehind(world_.bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear,

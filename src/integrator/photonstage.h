@@ -11,11 +11,9 @@ class BlockVertices;
 class LightPathStates;
 class MediaStacks;
 class RayStore;
-class Requests;
 struct StageSet;
 class SurfaceShading;
 class Transparency;
-class VertexLight;
 
 /// A lobe of a photon shading model; current space.
 struct ModelLobe {
@@ -55,8 +53,6 @@ public:
     PhotonModel modelAt(const BatchContext&, size_t point, bool all) const;
     /// The lobes of a model at a point; returns their number.
     static int lobesOfModel(PhotonModel, const ShadePoint&, const Color& Cs, ModelLobe (&to)[kModelLobes]);
-    /// Replaces the lobes that the kernel requested by those of the photon shading models; `all`: for every point.
-    void takeModels(BatchContext&, bool all);
 
 private:
     const photonmap::PhotonMap* globalMapOf(int binding);
@@ -67,10 +63,8 @@ private:
     const LightPathStates& paths_;
     MediaStacks& media_;
     RayStore& store_;
-    Requests& requests_;
     SurfaceShading& shading_;
     Transparency& transparency_;
-    VertexLight& vertexLight_;
 };
 
 } // namespace alpenglow::integrator

@@ -1,4 +1,4 @@
-// Interprets the requests of kernels at points (docs/design/rsl.md). vertexsampling.h processes the lobes.
+// Interprets the requests of kernels at points (docs/design/rsl.md). blockrequests.h takes the lobes.
 #include "integrator/requests.h"
 #include "base/direction.h"
 #include "bsdf/sampling.h"
@@ -16,7 +16,6 @@
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "integrator/subsurfacewalks.h"
-#include "integrator/vertexsampling.h"
 #include "shadeops/distributions.h"
 #include "texture/lookup.h"
 #include "world/blocksite.h"
@@ -54,19 +53,6 @@ template <class Row> bool pointsNowhere(const SiteInfo& s, const Row& f) {
     const int row = s.rows[1];
     return f(row) == 0 && f(row + 1) == 0 && f(row + 2) == 0;
 }
-
-/// Values of a point that lights may query.
-template <class Row> LitValues litValues(const BatchContext& c, const SiteInfo& s, int point, const Row& f) {
-    LitValues told;
-    told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray has none
-    told.displaced = c.displaced;
-    told.point = point;
-    for (const SiteInfo::Output& o : s.outputs) {
-        auto& of = told.outputs.emplace_back(&o, std::vector<float>());
-        for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
-    }
-    return told;
-}
 } // namespace
 
 /// Requests that shadow rays answer.
@@ -79,7 +65,7 @@ void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, con
         ambient_.asked.push_back({point, Vec3(f(s.rows[0]), f(s.rows[0] + 1), f(s.rows[0] + 2)), weight, target, owns});
         if (!world_.lightsAsk()) return;
         ambient_.asked.back().lit = int(litSurfaces_.values.size());
-        litSurfaces_.values.push_back(litValues(c, s, point, f));
+        litSurfaces_.values.push_back(litValuesOf(c, s, point, f));
         return;
     }
     if (s.kind == SiteKind::Transmission) {
@@ -175,7 +161,6 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
         l.elsewhere = true;
         l.from = from;
     }
-    l.deltaLights = s.allLights;
     l.lobeOfShader = false;
     l.samples = occlusion_.samplesOf(samplesAskedOf(s, f), p.shape, s, c);
     return l.importance > 0 || photons_.photonTrace();
@@ -209,7 +194,7 @@ void Requests::request(BatchContext& c, const SiteInfo& s, int point, const floa
     l.occurrence = occurrence;
     if (world_.lightsAsk()) {
         l.lit = int(litSurfaces_.values.size());
-        litSurfaces_.values.push_back(litValues(c, s, point, f));
+        litSurfaces_.values.push_back(litValuesOf(c, s, point, f));
     }
     if (s.kind == SiteKind::Subsurface) {
         subsurface_.request(c, s, p, f, l);

@@ -1,4 +1,4 @@
-// Interprets the requests of kernels (docs/light.md): collects lobes for the stages of vertexsampling.h, and makes shadow rays.
+// Interprets the requests of kernels (docs/light.md): collects lobes, and makes shadow rays.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"

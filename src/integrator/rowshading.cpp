@@ -44,7 +44,7 @@ static bool needsNoPoints(const BoundKernel& k) {
 
 bool RowShading::takes(const SurfaceBinding& b) const {
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
-        if (*k && !(blocks_.takes(b, *k) && needsNoPoints(*k))) return false;
+        if (*k && !(blocks_.takes(*k) && needsNoPoints(*k))) return false;
     return b.surfaceS && b.areaLight < 0 && !b.moveS && !b.displacementS && !b.atmosphere.shader && b.lightOutputs.empty() &&
            b.aside.empty() && !b.matte && b.surface && !b.surface->moving;
 }
@@ -137,7 +137,7 @@ void RowShading::count(const BatchContext& c) {
     const uint64_t n = c.rays.size(), lanes = uint64_t(c.bound->kernel->lanes());
     Counters& of = counters_;
     of.points += n;
-    of.inBlocks += n;
+    of.inRows += n;
     ++of.batches;
     of.lanesUsed += n;
     of.lanesRun += (n + lanes - 1) / lanes * lanes;

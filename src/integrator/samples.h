@@ -20,7 +20,7 @@ struct Counters {
     uint64_t ignored = 0;                  ///< rays of trace() that were not sent because their "weight" is 0
     uint64_t tests = 0, hits = 0;          ///< intersection queries, and those with a hit
     uint64_t points = 0, batches = 0, lanesUsed = 0, lanesRun = 0;
-    uint64_t inBlocks = 0; ///< of `points`, those lit in blocks of 16; for waiting kernels, their calls
+    uint64_t inRows = 0; ///< of `points`, those whose requests were read in rows; for waiting kernels, their calls
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0;
     uint64_t guided = 0;                    ///< rays aimed by the caustic guide; also counted in the other counters

@@ -292,38 +292,14 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
 
 /// Gathers light at the exits as diffuse() does.
 void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
-    static const LobeKind* const kind = findLobe("diffuse");
-    const WorldImpl& world = world_;
     auto c = batches_.take();
     c->bound = c_.bound;
-    c->binding = &world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
+    c->binding = &world_.bindings_[size_t(world_.bindingOf_[exits[0].shape])];
     c->below = true;
     settleAt(*c, exits);
     std::vector<float> indirect;
     for (const Exit& x : exits) indirect.push_back(asked_[size_t(x.asked)].indirect);
-    if (blocks_.runExits(*c, indirect, sched)) {
-        shadows_.flush(sched);
-        return batches_.giveBack(std::move(c));
-    }
-    for (size_t i = 0; i < exits.size(); ++i) {
-        const Exit& x = exits[i];
-        const ShadePoint& p = c->points[i];
-        LobeVertex& l = requests_.lobes.emplace_back();
-        l.kind = kind;
-        l.point = int(i);
-        l.weight = Color(1);
-        l.target = c->targets[i];
-        l.site = kSegmentEvent;
-        l.directOnly = !rules_.pickOne;
-        l.share = asked_[size_t(x.asked)].share;
-        l.indirect = asked_[size_t(x.asked)].indirect;
-        if (world.lightsAsk()) {
-            l.lit = int(litSurfaces_.values.size());
-            litSurfaces_.values.emplace_back().binding = c->bindings[i];
-        }
-        l.place = requests_.rows.add(*kind, {p.N, x.out, {}, 0});
-    }
-    vertexLight_.gather(*c, sched);
+    blocks_.runExits(*c, indirect, sched);
     skies(*c, sched);
     shadows_.flush(sched);
     batches_.giveBack(std::move(c));

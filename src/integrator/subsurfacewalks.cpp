@@ -34,7 +34,7 @@ void SubsurfaceWalks::request(BatchContext& c, const SiteInfo& s, const ShadePoi
     const float samples = site.samples < 0 ? many : f(site.samples);
     l.samples = occlusion_.samplesOf(std::max(1.f, samples), p.shape, s, c); // not a number: 1
     l.rays = &kSpecularKind; // of a single walk: with --no-indirect the light of lights still counts
-    l.lights = l.deltaLights = false;
+    l.lights = false;
     l.below = int32_t(below.size());
     below.push_back(mediumOf(s, p, f));
 }

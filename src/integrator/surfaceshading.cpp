@@ -165,7 +165,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
         c->opaque = !photons_.photonTrace() && isOpaque(*c->batch); // those see the opacity of their shading models
         if (!c->opaque && rules_.pickOne) transparency_.tellClear(*c);
         if (blocks_.run(*c, sched)) {
-            counters_.inBlocks += uint64_t(n);
+            counters_.inRows += uint64_t(n);
             requests_.requestPairs(*c, nullptr, sched, false);
             if (!ambient_.asked.empty()) ambient_.gather(*c);
             shadows_.flush(sched);

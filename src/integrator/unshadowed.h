@@ -1,25 +1,32 @@
-// Light along a ray of trace() without occlusion, for its results "unshadowedarealight" and "unshadowedenvironment".
+// Light along a ray of trace() if only area lights existed: "unshadowedarealight" for rays without light samples, and
+// "unshadowedenvironment", which area lights still occlude.
 #pragma once
+#include "integrator/batchcontext.h"
 #include "integrator/context.h"
-#include "integrator/rays.h"
 
 namespace alpenglow::integrator {
 
-struct BatchContext;
 class Intersector;
 class LightKernels;
 class LitSurfaces;
-struct LobeVertex;
 struct StageSet;
+
+/// A ray of a trace() with sums, from a point of a batch. Current space.
+struct UnshadowedRay {
+    int point = 0;                 ///< index in the batch
+    const RayKind* rays = nullptr; ///< never null
+    Vec3 origin, direction;        ///< unit direction
+    float maxDistance = 1e38f;
+    bool bringsEmission = false; ///< its call samples lights, but not for this ray: a delta lobe, or a ray from elsewhere
+    Vec3 lit;                    ///< the point that the lights see
+    int told = -1;               ///< index in LitSurfaces::values
+};
 
 class UnshadowedLight final : Stage {
 public:
     explicit UnshadowedLight(const StageSet&);
-    /// Adds to the sums of a call what a ray of a request would find if only area lights existed; these still hide the
-    /// environment. lamps: area lights count, as light samples do not estimate them. through: factor of the light; environment:
-    /// radiance of the call's map in direction w, unit.
-    void add(const BatchContext&, const LobeVertex&, bool lamps, const Vec3& origin, const Vec3& w, const Color& through,
-             const Color& environment, TraceSums&);
+    /// Adds the light that the ray would bring without occlusion. through: its throughput; environment: of its map.
+    void add(const BatchContext&, const UnshadowedRay&, const Color& through, const Color& environment, TraceSums&);
 
 private:
     Intersector& intersector_;

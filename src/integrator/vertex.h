@@ -1,4 +1,4 @@
-// A shaded point for the stages of vertexsampling.h: its lobes, and the values that lights query.
+// What calls request at a shaded point: lobes, walks, ambient light; and the values that lights query.
 #pragma once
 #include "integrator/lightdirected.h"
 #include "integrator/rays.h"
@@ -37,7 +37,7 @@ struct AmbientAsked {
     int lit = -1;      ///< index in LitSurfaces::values
 };
 
-/// A lobe at a point.
+/// A lobe that a call requests at a point.
 struct LobeVertex {
     int point = 0;
     const LobeKind* kind = nullptr;
@@ -45,17 +45,13 @@ struct LobeVertex {
     Color weight;           ///< of the request, without the ray's throughput
     AccumulatorId target = shading::kNoAccumulator;
     const RayKind* rays = &kDiffuseKind;
-    bool lights = true;       ///< samples lights
-    bool deltaLights = true;  ///< including point, spot and distant lights (not trace() without "samplelights")
+    bool lights = true;       ///< samples lights, if it is no delta
     bool lobeOfShader = true; ///< of a lighting shadeop: subject to the energy rule and to lobe selection
     uint32_t site = 0, occurrence = 0;
     uint32_t before = 0; ///< rays that the same waiting kernel has requested at this point before
     float maxDistance = 1e38f;
     int samples = 1;
     bool ownsTarget = false; ///< a suspended request: the target also receives distance and transmission
-    bool followed = true;    ///< its ray may be sent
-    bool delta = false;      ///< kind->isDelta(params)
-    bool narrow = false;     ///< not a delta lobe, but photons treat it as one
     bool elsewhere = false;  ///< trace() from another position than the surface point: `from`
     Vec3 from;
     float bias = -1;      ///< < 0: the error bound of the hit
@@ -69,11 +65,6 @@ struct LobeVertex {
     int32_t below = -1;      ///< SubsurfaceWalks::below, for a subsurface() whose rays walk; -1: other lobes
     bool directOnly = false; ///< lights are sampled, no ray is sent
     float indirect = 1;      ///< factor of its rays
-    float albedo = 0;        ///< kind->albedo(params)
-    uint8_t guide = 0;       ///< GuideRays::Aim::trail() for its own ray
-    float chosen = 1;        ///< probability that the indirect ray of this lobe is followed
-    bool last = false;       ///< its ray would exceed the depth limit: skies are sampled in its place
-    LightDirected beside;    ///< light-directed sampling in a medium
 };
 
 /// n or -n: on the side of the surface at p from which a ray in direction dir arrives.

@@ -42,9 +42,15 @@ protected:
     std::vector<LobeBlock*> block_;              ///< lobesOf()
     std::map<int, std::vector<uint32_t>> loops_; ///< by call site that is called several times at a point: calls so far
     bool repeats_ = false;                       ///< some call site is called several times at a point
-    bool several_ = false;                       ///< the kernel waits for several rays of a call
+    bool sendsSeveral_ = false;                  ///< the kernel waits for several rays of a call
     std::vector<Lanes> lit_;                     ///< by block: points that sample lights
     int onlySite_ = -1;                          ///< the only site that samples the light; -1: all
+    uint32_t draw_ = 0;                          ///< which sample of the light, if lobes take several
+    bool several_ = false;                       ///< some lobe takes several samples of each light
+    bool checksHits_ = false;                    ///< lobes differ in the samples of the light that their rays could hit
+    std::vector<int> told_;                      ///< by point: index in LitSurfaces::values; empty: no light queries surfaces
+    std::vector<uint64_t> given_;                ///< by point: the light whose outputs were kept last, and which samples
+    alignas(64) Row draws_;                      ///< by lane: samples of the light that a lobe takes
     std::vector<LightBlock> lights_;
     std::vector<LastRay> ends_;
     std::vector<render::NumberBlock> pairs_, choices_;

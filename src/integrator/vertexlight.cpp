@@ -1,30 +1,15 @@
 #include "integrator/vertexlight.h"
 #include "integrator/ambientlight.h"
 #include "integrator/blockvertices.h"
-#include "integrator/context.h"
-#include "integrator/photonstage.h"
-#include "integrator/requests.h"
 #include "integrator/stageset.h"
-#include "integrator/subsurfacewalks.h"
-#include "integrator/vertexsampling.h"
 
 namespace alpenglow::integrator {
 
-VertexLight::~VertexLight() = default;
-
-VertexLight::VertexLight(const StageSet& s)
-    : Stage(s.context), set_(s), ambient_(s.ambient), blocks_(s.blocks), requests_(s.requests), subsurface_(s.subsurface) {}
+VertexLight::VertexLight(const StageSet& s) : Stage(s.context), ambient_(s.ambient), blocks_(s.blocks) {}
 
 void VertexLight::gather(BatchContext& c, Sched& sched) {
     if (!ambient_.asked.empty()) ambient_.gather(c);
-    if (blocks_.runRequests(c, sched)) return;
-    if (set_.photons.photonTrace()) set_.photons.takeModels(c, false);
-    std::unique_ptr<VertexSampling> g = std::move(gather_); // moved out, so that a nested call makes its own
-    if (!g) g = std::make_unique<VertexSampling>(set_);
-    g->run(c, sched);
-    requests_.apartAt.clear();
-    gather_ = std::move(g);
-    if (!subsurface_.below.empty()) subsurface_.walk(c, sched);
+    blocks_.runRequests(c, sched);
 }
 
 void VertexLight::tellScaled(const SurfaceBinding& b, bool more) {

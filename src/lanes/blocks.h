@@ -83,6 +83,7 @@ struct alignas(64) LightBlock {
     Lanes metDiffuse = 0, metSpecular = 0; ///< points whose rays of these kinds could hit the light
     bool emitter = false;                  ///< `end` is set
     bool met = false;                      ///< rays can hit it: multiple importance sampling applies
+    const float* draws = nullptr;          ///< a row, samples of the light that the lobe takes; null: one
     bool parted = false;                   ///< `part` is set
     Row part;                              ///< MIS weight of samples of this kind
 };

@@ -14,8 +14,6 @@ bool isPlainTrace(const SiteInfo& s) {
     const TraceSite& t = *s.trace;
     const RaySite& r = *s.rays;
     const bool rays = r.fixed && r.base < 0;
-    const shading::RaySet& set = r.set; // of shadow rays, too
-    if (s.rowLights >= 0 && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default)) return false;
     return rays && t.distribution < 0 && !t.map && !t.sums && !t.onlyLights && !t.axis && !t.openness && t.records.call == 0;
 }
 
@@ -42,7 +40,7 @@ void bindDistribution(const SiteInfo& s, LobeArguments& a) {
 } // namespace
 
 std::shared_ptr<const LobeArguments> blockSite(const SiteInfo& s, bool path) {
-    if (!path && (s.kind != SiteKind::Trace || s.rowLights >= 0)) return nullptr; // each ray would sample lights
+    if (!path && s.kind != SiteKind::Trace) return nullptr;
     if (!s.lobe || (s.lobe->distribution && s.kind != SiteKind::Trace)) return nullptr;
     LobeArguments a;
     a.needsWo = (lobeLanes(1).lobes[s.lobe->index].needs & kNeedsWo) != 0;

@@ -27,11 +27,11 @@ struct Settings {
     bool unbiased = false;               ///< disables the energy rule
     bool localRoulette = false;          ///< SLProject's rule (--preset slproject) instead of throughput
     bool roulette = true;
-    bool suspend = false;   ///< suspends kernels also where affine ones exist (tests)
-    bool mixedOnly = false; ///< uses build V everywhere (tests: same bits as S)
-    bool bsdfOnly = false;  ///< no light sampling, emission counts in full (tests, T6)
-    bool lightOnly = false; ///< light sampling only: emission hit by lobe rays does not count (tests, T6)
-    bool blocks = true;     ///< vertices with lobes only are processed 16 at a time (tests: same bits one by one)
+    bool suspend = false;    ///< suspends kernels also where affine ones exist (tests)
+    bool mixedOnly = false;  ///< uses build V everywhere (tests: same bits as S)
+    bool bsdfOnly = false;   ///< no light sampling, emission counts in full (tests, T6)
+    bool lightOnly = false;  ///< light sampling only: emission hit by lobe rays does not count (tests, T6)
+    bool rowRequests = true; ///< requests of kernels are read in rows where they can be (tests: same bits one by one)
     /// hidden, raytrace: camera samples take colours from micropolygons that are shaded once for all samples; false: each sample
     /// is shaded at its own hit.
     bool micropolygons = false;

@@ -155,7 +155,7 @@ void expectSameBits(const std::string& rib, const std::vector<CameraRay>& rays, 
     mixedOnly.mixedOnly = true;
     EXPECT_EQ(differences(whole, bitsOf(Scene(rib, mixedOnly).trace(rays))), 0u) << "build V";
     Settings single = settings;
-    single.blocks = false;
+    single.rowRequests = false;
     EXPECT_EQ(differences(whole, bitsOf(Scene(rib, single).trace(rays))), 0u) << "points one by one";
 }
 

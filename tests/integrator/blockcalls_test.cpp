@@ -27,7 +27,7 @@ TEST(BlockCalls, FollowLobesToTheDepthsOfTheirSurfaces) {
             EXPECT_EQ(differences(one, all), 0u) << more << diffuse << specular;
             EXPECT_EQ(differences(one, narrow), 0u) << more << diffuse << specular;
             EXPECT_EQ(one.cut, all.cut) << more << diffuse << specular;
-            EXPECT_GT(all.inBlocks, all.points / 3) << more << diffuse << specular;
+            EXPECT_GT(all.inRows, all.points / 3) << more << diffuse << specular;
         }
 }
 
@@ -86,8 +86,8 @@ TEST(BlockCalls, FollowLoopsAndWalksBelowSurfaces) {
                 const std::string rib = roomOf(shader, more);
                 const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);
                 EXPECT_GT(sumOf(one), 1) << shader << more;
-                EXPECT_EQ(one.inBlocks, 0u);
-                EXPECT_GT(all.inBlocks, all.points / 3) << shader << more;
+                EXPECT_EQ(one.inRows, 0u);
+                EXPECT_GT(all.inRows, all.points / 3) << shader << more;
                 EXPECT_EQ(differences(one, all), 0u) << shader << more;
                 EXPECT_EQ(differences(one, trace(rib, true, 4, -1, s)), 0u) << shader << more;
             }
@@ -113,7 +113,7 @@ TEST(BlockCalls, SampleLightsThatFilterOverTheirSurfaceOrReadN) {
         EXPECT_GT(sumOf(one), 1) << more;
         EXPECT_EQ(differences(one, all), 0u) << more;
         EXPECT_EQ(differences(one, trace(rib, true, 4)), 0u) << more;
-        if (more.find("__importancesample") == std::string::npos) EXPECT_GT(all.inBlocks, all.points / 3) << more;
+        if (more.find("__importancesample") == std::string::npos) EXPECT_GT(all.inRows, all.points / 3) << more;
     }
 }
 
@@ -144,8 +144,8 @@ TEST(BlockCalls, FollowAllLobesUnderOtherHiders) {
                 const std::string rib = roomOf(shader, more);
                 const Traced one = trace(rib, false, 16, 3, s), all = trace(rib, true, 16, 3, s);
                 EXPECT_GT(sumOf(one), 1) << shader << more;
-                EXPECT_EQ(one.inBlocks, 0u);
-                EXPECT_GT(all.inBlocks, all.points / 4) << shader << more << int(hider);
+                EXPECT_EQ(one.inRows, 0u);
+                EXPECT_GT(all.inRows, all.points / 4) << shader << more << int(hider);
                 EXPECT_EQ(differences(one, all), 0u) << shader << more << int(hider);
                 EXPECT_EQ(differences(one, trace(rib, true, 4, 3, s)), 0u) << shader << more << int(hider);
                 EXPECT_EQ(one.cut, all.cut) << shader << more << int(hider);

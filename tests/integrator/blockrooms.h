@@ -8,15 +8,14 @@ namespace alpenglow::integrator::testing {
 
 struct Traced {
     std::vector<SampleResult> samples;
-    uint64_t inBlocks, points, cut;
+    uint64_t inRows, points, cut;
 };
 inline Settings pathSettings() {
     Settings s;
     s.hider = Hider::Path;
     return s;
 }
-/// What a camera sees of a scene.
-inline Traced view(Scene& scene) {
+inline Traced trace(Scene& scene) {
     std::vector<CameraRay> rays;
     const int side = nightly() ? 30 : 20;
     for (int i = 0; i < side * side; ++i) {
@@ -28,17 +27,17 @@ inline Traced view(Scene& scene) {
     t.samples.resize(rays.size());
     Integrator integrator(scene.world, scene.diagnostics);
     integrator.trace(rays, t.samples, nullptr);
-    t.inBlocks = integrator.counters().inBlocks;
+    t.inRows = integrator.counters().inRows;
     t.points = integrator.counters().points;
     t.cut = integrator.counters().depthCap;
     return t;
 }
 inline Traced trace(const std::string& rib, bool blocks, int lanes = 16, int maxDepth = -1, Settings s = pathSettings()) {
     s.maxDepth = maxDepth;
-    s.blocks = blocks;
+    s.rowRequests = blocks;
     s.lanes = lanes;
     Scene scene(rib, s);
-    return view(scene);
+    return trace(scene);
 }
 
 inline const char* const kLights =

@@ -1,5 +1,6 @@
 // Stage place (lanes/stages.h): points of lamps of a few triangles have the bits of Emitter::sample(), at every width.
 #include "geometry/make.h"
+#include "integrator/names.h"
 #include "lanes/stages.h"
 #include "world/arealight.h"
 #include <bit>

@@ -15,7 +15,7 @@ namespace {
 
 Settings path(bool blocks = true) {
     Settings s = withShaders(Hider::Path);
-    s.blocks = blocks;
+    s.rowRequests = blocks;
     return s;
 }
 
@@ -267,7 +267,7 @@ TEST(CausticGuide, BlocksHaveTheBitsOfSinglePoints) {
             }
             Counters n;
             all.push_back(s.trace(rays, &n));
-            if (!blocks) EXPECT_EQ(n.inBlocks, 0u);
+            if (!blocks) EXPECT_EQ(n.inRows, 0u);
             if (c.name != "mirror that waits") EXPECT_GT(n.guided, 0u) << c.name;
         }
         size_t differ = 0;

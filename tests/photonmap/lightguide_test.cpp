@@ -29,7 +29,7 @@ FlatEmitter square() {
 
 Settings path(bool blocks = true) {
     Settings s = withShaders(Hider::Path);
-    s.blocks = blocks;
+    s.rowRequests = blocks;
     return s;
 }
 

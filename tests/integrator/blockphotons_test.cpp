@@ -193,7 +193,6 @@ namespace {
 struct Flown {
     std::vector<StoredPhoton> photons;
     uint64_t inRows, points;
-    long messages; ///< lines
 };
 Flown flown(const std::string& rib, const Settings& settings, const PhotonUse& use) {
     constexpr uint32_t kPhotons = 2000;
@@ -204,8 +203,6 @@ Flown flown(const std::string& rib, const Settings& settings, const PhotonUse& u
     EXPECT_TRUE(thread.emit(3, 0, kPhotons, kPhotons, f.photons, nullptr));
     f.inRows = thread.counters().inRows;
     f.points = thread.counters().points;
-    const std::string said = s.messages();
-    f.messages = std::count(said.begin(), said.end(), '\n');
     return f;
 }
 size_t differences(const Flown& a, const Flown& b) {
@@ -228,7 +225,6 @@ void expectSame(const std::string& rib, const std::string& what, const PhotonUse
     EXPECT_GE(double(all.inRows), least * double(all.points)) << what;
     EXPECT_GT(one.photons.size(), 10u) << what;
     EXPECT_EQ(differences(one, all), 0u) << what;
-    EXPECT_EQ(one.messages, all.messages) << what;
     if (chosen(what.size(), 3)) EXPECT_EQ(differences(one, flown(rib, narrow, use)), 0u) << what << ", narrow kernels";
 }
 constexpr PhotonUse kCaustics{.all = true, .sky = false, .caustics = true, .width = .1f};
@@ -254,7 +250,7 @@ TEST(BlockPhotons, FlyAsShadersSay) {
     struct Case {
         std::string shader, more;
     };
-    const std::string clear = "Opacity .5 .6 .7\n", bumpy = "ShadingRate 16\nAttribute \"displacementbound\" \"float sphere\" "
+    const std::string clear = "Opacity .5 .6 .7\n", bumpy = "ShadingRate 100\nAttribute \"displacementbound\" \"float sphere\" "
                                                             ".1\nDisplacement \"bumpy\"\n";
     for (const Case& c :
          {Case{"matte", ""}, Case{"plastic", clear}, Case{"glossy", ""}, Case{"facets", clear + "Sides 1\n"},
@@ -311,6 +307,43 @@ TEST(BlockPhotons, FlyThroughMediaAndMotion) {
                           Case{"unbiased", coated, unbiased}}) {
         expectSame(c.rib, c.what, {.sky = false}, .8, c.settings);
         expectSame(c.rib, std::string(c.what) + ", caustics", kCaustics, .8, c.settings);
+    }
+}
+
+// Calls whose arguments are read one by one: names that a shader computes, rays from elsewhere, points that a shader moved, calls
+// whose order differs, numbers that are not usual; for photons, and for paths that gather them.
+TEST(BlockPhotons, AtRequestsMadeOneByOne) {
+    const std::string begin = "() { normal n = faceforward(normalize(N), I); vector V = -normalize(I); Oi = Os; ";
+    const auto write = [&](const std::string& name, const std::string& body) {
+        writeShader(name, "surface " + name + begin + body + " }\n");
+    };
+    write("named", "string d = mod(xcomp(20 * P), 2) < 1 ? \"cook-torrance\" : \"ggx\"; Ci = .3 * diffuse(n) + .6 * trace(P, "
+                   "n, \"distribution\", d, \"roughness\", .06, \"samplearealights\", 1, \"type\", \"specular\");");
+    write("orders", "if (mod(xcomp(20 * P), 2) < 1) { Ci = .3 * diffuse(n); Ci += 4 * specular(n, V, .02); } "
+                    "else { Ci = 4 * specular(n, V, .02); } Ci += .2 * diffuse(n) + 2 * phong(n, V, 300);");
+    write("based", "Ci = .3 * diffuse(n) + .6 * trace(P, reflect(-V, n), \"samplebase\", 1, \"samplecone\", .01, "
+                   "\"samplearealights\", mod(xcomp(20 * P), 2) < 1 ? 1 : 0);");
+    write("tiny", "Ci = .5 * diffuse(normal(1e-25 * n)) + 4 * specular(normal(1e-25 * n), V, .02);");
+    write("moves", "P += .02 * n; Ci = .4 * diffuse(n) + 4 * specular(n, V, .02) + .2 * trace(P, reflect(-V, n));");
+    const std::string exits = "AttributeBegin\nAttribute \"displacementbound\" \"float sphere\" .1\nDisplacement \"bumpy\"\n"
+                              "Surface \"waxen\"\nShadingRate 100\nTranslate 0 .3 3\nSphere .5 -.5 .5 360\nAttributeEnd\n";
+    writeShader("bumpy", R"(displacement bumpy() { P += .03 * sin(20 * u) * normalize(N); N = calculatenormal(P); })");
+    writeShader("waxen", "surface waxen() { Oi = 1; Ci = .3 * diffuse(faceforward(normalize(N), I)) + .5 * subsurface(P, N, "
+                         "\"reflectance\", color(.8, .6, .4), \"meanfreepath\", .1, \"ior\", 1.3); }\n");
+    const std::string traced = "Attribute \"grouping\" \"string tracesubset\" \"some\"\nAttribute \"grouping\" \"string "
+                               "membership\" \"some\"\n";
+    for (const auto& [shader, more] : {std::pair("named", std::string()),
+                                       {"orders", ""},
+                                       {"based", ""},
+                                       {"tiny", ""},
+                                       {"moves", "ShadingRate 100\n"},
+                                       {"named", traced},
+                                       {"matte", exits}}) {
+        const std::string rib = roomOf("\"" + std::string(shader) + "\"", kMirrors + more), what = shader + more;
+        expectSame(rib, what, {.sky = false}, 0);
+        expectSame(rib, what + ", caustics", kCaustics, 0);
+        const Traced one = gathering(rib, withShipped(false), .1f), all = gathering(rib, withShipped(true), .1f);
+        EXPECT_EQ(differences(one, all), 0u) << what;
     }
 }
 

@@ -113,7 +113,7 @@ inline float safeCosine(float x) { return std::max(std::fabs(x), 1e-4f); }
 /// Sine of the angle between two unit vectors.
 inline float sine(const Vec3& w, const Vec3& n) { return length(cross(w, n)); }
 
-/// Photons that arrive within this angle of the normal, in radians, are tilted (blockflight.cpp).
+/// Photons that arrive within this angle of the normal, in radians, are tilted (photonflight.cpp).
 inline constexpr float kLeastTilt = 1e-3f;
 
 /// Factor from the radiance that a lobe scatters along the reverse path to the power of the photon (adjoint correction). lobe:

@@ -1,4 +1,4 @@
-// Interprets the requests of kernels at points (docs/design/rsl.md). blockrequests.h takes the lobes.
+// Interprets the requests of kernels at points (docs/design/rsl.md). singlerequests.h takes the lobes.
 #include "integrator/requests.h"
 #include "base/direction.h"
 #include "bsdf/sampling.h"

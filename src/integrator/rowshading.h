@@ -1,5 +1,5 @@
 // Groups whose kernel only requests light and reads no more than the surface position (shading::SurfaceRows): goes from hits to
-// the rows of the kernel and of the blocks (blockvertices.h) without a structure for each point.
+// the rows of the kernel and of the blocks (vertexblocks.h) without a structure for each point.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/context.h"

@@ -281,36 +281,36 @@ void ScatterRays::keepLobes(size_t b, BatchContext& c) {
     for (int i = 0; i < kBlock; ++i) r.flags[i] = (r.flags[i] & kAskedBits) | (v_.waits ? kFirstBit : 0); // clears the trail
     for (Lanes left = v_.next.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
+        const size_t point = b * kBlock + size_t(i);
         const Site& s = v_.sites[size_t(v_.next.site[i])];
-        const LobeVertex* const request = s.requestAt(b * kBlock + size_t(i));
-        const uint64_t kind = reinterpret_cast<uintptr_t>(&s.raysAt(b * kBlock + size_t(i)));
+        const LobeVertex* const request = s.requestAt(point);
+        const uint64_t kind = reinterpret_cast<uintptr_t>(&s.raysAt(point));
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
-        const bool sampled = s.lightsAt(b * kBlock + size_t(i)) &&
+        const bool sampled = s.lightsAt(point) &&
                              !((v_.next.single | s.lobes[b].elsewhere) >> i & 1); // then emission that it hits is weighted by MIS
         r.pdf[i] = sampled && rules_.lightsAtRequests ? v_.next.pdf[i] * s.lobes[b].chosen[i] : -1;
-        r.binding[i] = sampled ? c.bindings[b * kBlock + size_t(i)] : -1;
+        r.binding[i] = sampled ? c.bindings[point] : -1;
         if (const uint16_t path = uint16_t(r.path[i])) {
             const Vec3 w(v_.next.direction[0][i], v_.next.direction[1][i], v_.next.direction[2][i]);
-            r.path[i] += v_.pathOf(s, v_.next.single >> i & 1, b * kBlock + size_t(i), w, c) - uint32_t(path);
+            r.path[i] += v_.pathOf(s, v_.next.single >> i & 1, point, w, c) - uint32_t(path);
         }
         if (!world_.media_.empty() && !c.between) {
             const Vec3 w(v_.next.direction[0][i], v_.next.direction[1][i], v_.next.direction[2][i]);
-            const auto media = reinterpret_cast<uintptr_t>(media_.towards(c, int(b * kBlock + size_t(i)), w));
+            const auto media = reinterpret_cast<uintptr_t>(media_.towards(c, int(point), w));
             r.media[0][i] = uint32_t(media), r.media[1][i] = uint32_t(uint64_t(media) >> 32);
         }
         r.extra[i] = -1;
-        const size_t point = b * kBlock + size_t(i);
         const int32_t share = v_.shareOf(s, point, c.rays[point]);
         const float indirect = flight_.on() // then the ray's weight includes it
                                    ? 1
                                    : (v_.next.indirect[i] == 0 ? 1 : v.energyScale[i]) * v_.indirectOf(s, point);
-        const bool fades = !s.options.empty() && s.options[b * kBlock + size_t(i)].fade.fades();
+        const bool fades = !s.options.empty() && s.options[point].fade.fades();
         const int lit = v_.toldAt(point);
         if (indirect == 1 && share < 0 && !c.between && !fades && lit < 0 && !request) continue;
         RayExtra extra;
         extra.lit = lit;
-        if (fades) extra.fade = s.options[b * kBlock + size_t(i)].fade;
-        if (c.between) extra.flown = c.flown[b * kBlock + size_t(i)];
+        if (fades) extra.fade = s.options[point].fade;
+        if (c.between) extra.flown = c.flown[point];
         extra.indirect = indirect;
         extra.share = share;
         if (request && !flight_.on()) single_.addToRay(*request, extra, i, c);

@@ -96,7 +96,7 @@ TEST(AddCosts, Service) {
 // Albedo is also a quantity of surfaces and of lobes: only the text of its name and the values of SampleResult are the output.
 TEST(AddCosts, Output) {
     const fs::path src = fs::path(ALPENGLOW_SOURCE_DIR) / "src";
-    const std::regex output(R"re("albedo"|'albedo'|\]->albedo |SampleResult::albedo,)re");
+    const std::regex output(R"re("albedo"|'albedo'|\]->albedo\b|SampleResult::albedo,)re");
     const std::set<std::string> others = {"world/bindkernel.cpp", "shadeops/raytracing.cpp"}; // a parameter of subsurface()
     std::set<std::string> files = {"integrator/samples.h"};                                   // which declares the value
     for (const auto& e : fs::recursive_directory_iterator(src)) {

@@ -18,6 +18,7 @@ PhotonGather::PhotonGather(const StageSet& s, const VertexStages& v)
 
 void PhotonGather::mark(BatchContext& c) {
     gathers_.clear();
+    if (!world_.photons_ || !world_.photons_->hasPasses()) return;
     for (size_t i = 0; i < v_.points; ++i) {
         if (!stage_.passOf(c.rays[i])) continue;
         gathers_.resize(v_.blocks);

@@ -256,6 +256,8 @@ void ScatterRays::turnRays(size_t b, BatchContext& c) {
 
 /// Applies the parameters to the next rays of a block.
 void ScatterRays::applyOptions(size_t b, const BatchContext& c) {
+    const auto some = [](const Site& s) { return !s.options.empty(); };
+    if (std::none_of(v_.sites.begin(), v_.sites.begin() + long(v_.count), some)) return;
     RayBlock& r = v_.rays[b];
     for (Lanes left = v_.next.goes; left; left &= left - 1) {
         const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;

@@ -14,17 +14,6 @@ VertexBlocks::VertexBlocks(const StageSet& s) : Stage(s.context), paths_(s.paths
 
 VertexStage::VertexStage(const StageSet& s, const VertexStages& v) : Stage(s.context), v_(v.blocks), stages_(lanes::stages()) {}
 
-const PathSample& VertexBlocks::sampleOf(const RayBlock& of, int lane) const {
-    const uint64_t at = uint64_t(of.sample[1][lane]) << 32 | of.sample[0][lane];
-    return at ? *reinterpret_cast<const PathSample*>(at) : store_.noSample;
-}
-
-float VertexBlocks::indirectOf(const Site& s, size_t point) const {
-    const LobeVertex* const r = s.requestAt(point);
-    if (s.direct || (s.lighting && s.diffuse && !apart.empty() && (apart[point / kBlock] >> point % kBlock & 1))) return 0;
-    return r ? r->indirect : indirect.empty() ? 1 : indirect[point];
-}
-
 std::span<LobeBlock*> VertexBlocks::lobesOf(size_t b) {
     block_.clear();
     for (size_t k = 0; k < count; ++k) block_.push_back(&sites[k].lobes[b]);
@@ -63,13 +52,6 @@ Vec3 VertexBlocks::originOf(const Site& s, size_t point, const Vec3& w) const {
     }
     if (moved) return surfaces_.leave(*moved, point, w);
     return v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, n, v.error[i], w);
-}
-
-/// RayExtra::share of the continuing ray.
-int32_t VertexBlocks::shareOf(const Site& s, size_t point, const PathRay& r) const {
-    if (waits) return -1;
-    const LobeVertex* const request = s.requestAt(point);
-    return request && request->share >= 0 ? request->share : store_.extraOf(r).share;
 }
 
 uint16_t VertexBlocks::pathOf(const Site& s, bool delta, size_t point, const Vec3& w, const BatchContext& c) const {

@@ -4,6 +4,7 @@
 #include "integrator/blocklobes.h"
 #include "integrator/context.h"
 #include "integrator/lastskies.h"
+#include "integrator/raystore.h"
 #include "integrator/raywords.h"
 #include "lanes/stages.h"
 #include <map>
@@ -11,7 +12,6 @@
 namespace alpenglow::integrator {
 
 class LightPathStates;
-class RayStore;
 class SurfacePoints;
 
 struct VertexBlocks final : Stage {
@@ -20,9 +20,16 @@ struct VertexBlocks final : Stage {
     /// The lobes of a block, one entry for each site.
     std::span<LobeBlock*> lobesOf(size_t block);
     /// The camera sample of a ray.
-    const PathSample& sampleOf(const RayBlock&, int lane) const;
+    const PathSample& sampleOf(const RayBlock& of, int lane) const {
+        const uint64_t at = uint64_t(of.sample[1][lane]) << 32 | of.sample[0][lane];
+        return at ? *reinterpret_cast<const PathSample*>(at) : store_.noSample;
+    }
     /// Factor of the light of surfaces that the ray of a lobe carries, without the energy rule.
-    float indirectOf(const Site&, size_t point) const;
+    float indirectOf(const Site& s, size_t point) const {
+        const LobeVertex* const r = s.requestAt(point);
+        if (s.direct || (s.lighting && s.diffuse && !apart.empty() && (apart[point / kBlock] >> point % kBlock & 1))) return 0;
+        return r ? r->indirect : indirect.empty() ? 1 : indirect[point];
+    }
     /// Sets the keys of the points of a block; the stream is still to be set.
     void beginNumbers(size_t block, render::NumberBlock&) const;
     /// Draws the random numbers of a stream (NumberBlock) at all points.
@@ -30,7 +37,11 @@ struct VertexBlocks final : Stage {
     /// Origin of a ray of a lobe in direction w.
     Vec3 originOf(const Site&, size_t point, const Vec3& w) const;
     /// RayExtra::share of light that a lobe reflects at the hit of a ray.
-    int32_t shareOf(const Site&, size_t point, const PathRay&) const;
+    int32_t shareOf(const Site& s, size_t point, const PathRay& from) const {
+        if (waits) return -1;
+        const LobeVertex* const r = s.requestAt(point);
+        return r && r->share >= 0 ? r->share : from.extra < 0 ? -1 : store_.extraOf(from).share;
+    }
     /// PathRay::path of light that a lobe scatters toward w.
     uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
     /// Index of a point in LitSurfaces::values; -1: none.

@@ -99,8 +99,8 @@ void VertexLoading::loadPoints(size_t b, const BatchContext& c) {
             v.P[q][k] = P[q];
             v.n[q][k] = p.n[q];
             v.I[q][k] = rows ? c.ways[size_t(q) * v_.points + i] : c.points[i].I[q];
-            v.clear[q][k] = v.beyond[q][k] = v.through ? c.clear[i][q] : 0;
         }
+        for (int q = 0; v.through && q < 3; ++q) v.clear[q][k] = v.beyond[q][k] = c.clear[i][q];
         v.error[k] = p.pError;
         v.bias[k] = s.bias;
     }

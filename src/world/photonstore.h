@@ -40,6 +40,7 @@ public:
     const photonmap::PhotonGrid* pass(uint32_t sample) const {
         return sample - firstPass_ < passes_.size() ? passes_[sample - firstPass_].get() : nullptr;
     }
+    bool hasPasses() const { return !passes_.empty(); }
     /// Sets the passes for samples from `first` on and removes earlier ones. lights: by light, whether the passes contain its
     /// photons.
     void setPasses(uint32_t first, std::vector<std::unique_ptr<photonmap::PhotonGrid>> passes);

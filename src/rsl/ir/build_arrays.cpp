@@ -7,6 +7,13 @@
 
 namespace alpenglow::rsl::ir {
 
+/// The length where it is known; of an array that changes its length, where it is not, that of its storage.
+int Builder::arrayLength(const Inst* a) const {
+    if (const Lengths* l = lengths(a))
+        if (const Inst* n = value(l->length); n && isConst(n)) return static_cast<int>(n->numbers[0]);
+    return a->op == Op::ArrayInput ? k_.inputs[static_cast<size_t>(a->index)].array : a->index;
+}
+
 namespace {
 
 /// What a length is with the default values of the parameters that it names; -1 where that is not to be seen.
@@ -102,44 +109,6 @@ bool Builder::grows(const Stmt::Declarator& d) {
     largestResize();
     const bool measured = d.init && d.init->text != "{}" && (d.init->kind == ExprKind::ArrayList || d.init->type.array > 0);
     return d.symbol->resizable && (grown_.count(d.symbol) || !measured);
-}
-
-/// Builds what is done with each of `count` elements: one after the other, so that short arrays become values; a loop where there
-/// are many, as code for each would take minutes to compile.
-void Builder::everyElement(int count, const std::function<void(Inst* at)>& each) {
-    constexpr int kOneByOne = 256;
-    if (count <= kOneByOne) {
-        for (int i = 0; i < count; ++i) each(constant(static_cast<float>(i)));
-        return;
-    }
-    countLoop(constant(0), constant(static_cast<float>(count)), each);
-}
-
-/// A loop over the numbers from `first` to `end`, exclusive. `each` must assign no variable.
-void Builder::countLoop(Inst* first, Inst* end, const std::function<void(Inst* at)>& each) {
-    Inst* inst = k_.make(Op::Loop, Kind::None);
-    inst->place = keptPlace(place_);
-    inst->args = {first};
-    inst->results = {Kind::Float};
-    inst->regions.resize(2);
-    Region* const saved = region_;
-    const size_t mark = log_.size();
-    const auto enter = [&](Region& r) {
-        region_ = &r;
-        r.params.push_back(k_.make(Op::RegionParam, Kind::Float));
-        return r.params.back();
-    };
-    Inst* at = enter(inst->regions[0]);
-    inst->regions[0].yields.push_back(emit(Op::Less, Kind::Bool, {at, end}));
-    at = enter(inst->regions[1]);
-    each(at);
-    inst->regions[1].yields.push_back(emit(Op::Add, Kind::Float, {at, constant(1)}));
-    region_ = saved;
-    while (log_.size() > mark) {
-        env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
-        log_.pop_back();
-    }
-    region_->body.push_back(inst);
 }
 
 /// Storage for an array that begins with `length` elements.
@@ -386,7 +355,7 @@ Inst* Builder::resizing(const Expr& e) {
 void Builder::addLengths(std::set<int>& slots) const {
     std::set<int> more;
     for (int n : slots)
-        if (const Inst* v = env_[static_cast<size_t>(n)])
+        if (const Inst* v = value(n))
             if (const Lengths* l = lengths(v)) more.insert({l->length, l->reserved});
     slots.insert(more.begin(), more.end());
 }

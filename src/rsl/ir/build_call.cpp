@@ -225,29 +225,6 @@ Inst* Builder::random(const Expr& e) {
     return call(Op::Service, std::move(s), {})[0];
 }
 
-Inst* Builder::transformCall(const Expr& e) {
-    const std::string& name = e.shadeop->name;
-    Base base = e.args.back()->type.base;
-    if (name == "vtransform") base = Base::Vector;
-    else if (name == "ntransform") base = Base::Normal;
-    else if (name == "ptransform") base = Base::Point;
-    std::vector<Inst*> a;
-    for (const ExprPtr& x : e.args) a.push_back(expr(*x));
-    place_ = e.place;
-    Inst* v = coerce(a.back(), base == Base::Matrix ? Kind::Matrix : Kind::Triple);
-    Inst* from = a.size() == 3 ? a[0] : leaves_.string("current");
-    Inst* to = a[a.size() - 2];
-    const auto between = [&](Inst* f, Inst* t) {
-        if (f->op == Op::ConstString && t->op == Op::ConstString) return toSpace(f->text, t->text, v, base, e.place);
-        return dynamicSpace(name == "ptransform" ? "transform" : name.c_str(), f, t, v, base);
-    };
-    if (to->kind == Kind::Matrix) {
-        v = between(from, leaves_.string("current"));
-        return transformBy(to, v, base);
-    }
-    return between(from, to);
-}
-
 Inst* Builder::special(const Expr& e) {
     const std::string& n = e.shadeop->name;
     if (n == "Du" || n == "Dv") {

@@ -112,9 +112,8 @@ bool Builder::selfContained(const Region& region) const {
 }
 
 bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, const Survey& about, Outlined& out) {
-    const std::vector<Inst*> env = env_;
-    const size_t log = log_.size(), sites = k_.sites.size();
-    Region* const saved = region_;
+    const Environment around = environment();
+    const size_t sites = k_.sites.size();
     Inst* function = k_.make(Op::Function, Kind::None);
     function->text = f.name;
     function->place = keptPlace(f.place);
@@ -124,14 +123,12 @@ bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, 
     bool good = true;
     const auto bind = [&](int n, Inst* v) {
         if (v->op == Op::ConstString) {
-            env_[static_cast<size_t>(n)] = v;
+            value(n) = v;
             return false;
         }
-        Inst* p = k_.make(Op::RegionParam, v->kind);
-        p->index = static_cast<int>(body.params.size());
+        Inst* p = parameter(body, v->kind);
         p->place = keptPlace(f.place);
-        body.params.push_back(p);
-        env_[static_cast<size_t>(n)] = p;
+        value(n) = p;
         return true;
     };
     for (size_t i = 0; i < values.size(); ++i) bind(slot(f.parameters[i]), values[i]);
@@ -160,10 +157,7 @@ bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, 
             body.yields.push_back(get(n));
         }
     }
-    region_ = saved;
-    log_.resize(log);
-    std::fill(env_.begin(), env_.end(), nullptr);
-    std::copy(env.begin(), env.end(), env_.begin());
+    goBackTo(around);
     for (const Inst* y : body.yields) good = good && y->kind != Kind::Array;
     if (!good || failed_ || body.yields.empty() || !selfContained(body)) {
         k_.sites.resize(sites);

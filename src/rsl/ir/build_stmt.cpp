@@ -5,51 +5,6 @@
 
 namespace alpenglow::rsl::ir {
 
-std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes,
-                                   const std::function<std::vector<Inst*>()>& no) {
-    if (isConst(condition)) return condition->numbers[0] != 0 ? yes() : no();
-    Inst* inst = k_.make(Op::If, Kind::None, {condition});
-    inst->place = keptPlace(place_);
-    inst->regions.resize(2);
-    const size_t mark = log_.size();
-    std::map<int, Inst*> changed[2];
-    std::vector<Inst*> extra[2];
-    for (int side = 0; side < 2; ++side) {
-        Region* saved = region_;
-        region_ = &inst->regions[static_cast<size_t>(side)];
-        extra[side] = side == 0 ? yes() : no();
-        region_ = saved;
-        for (size_t n = mark; n < log_.size(); ++n) changed[side][log_[n].first] = env_[static_cast<size_t>(log_[n].first)];
-        while (log_.size() > mark) {
-            env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
-            log_.pop_back();
-        }
-    }
-    region_->body.push_back(inst);
-    const auto yield = [&](Inst* a, Inst* b) {
-        if (a == b) return a;
-        inst->regions[0].yields.push_back(a);
-        inst->regions[1].yields.push_back(b);
-        inst->results.push_back(a->kind);
-        return emit(Op::Result, a->kind, {inst}, static_cast<int>(inst->results.size()) - 1);
-    };
-    std::set<int> slots;
-    for (const auto& side : changed)
-        for (const auto& [n, v] : side) slots.insert(n);
-    for (int n : slots) {
-        Inst* before = env_[static_cast<size_t>(n)];
-        const auto value = [&](int side) {
-            const auto it = changed[side].find(n);
-            return it == changed[side].end() ? before : it->second;
-        };
-        // Without a value before, the variable lives inside the branch only; array names never change what they stand for.
-        if (before && before->kind != Kind::Array && value(0)->kind == value(1)->kind) set(n, yield(value(0), value(1)));
-    }
-    std::vector<Inst*> out;
-    for (size_t n = 0; n < extra[0].size(); ++n) out.push_back(yield(extra[0][n], extra[1][n]));
-    return out;
-}
-
 Inst* Builder::alive() {
     const Frame& f = frames_.back();
     Inst* dead = nullptr;
@@ -86,22 +41,18 @@ size_t Builder::statements(const std::vector<StmtPtr>& list, size_t from, int de
             for (size_t later = n; later < list.size(); ++later)
                 for (const Stmt::Declarator& d : list[later]->declarators) set(slot(d.symbol), zero(kindOf(d.symbol->type)));
         size_t reached = list.size();
-        branch(
-            live,
-            [&] {
-                // Inside, the flags are known to be off: no further guards until one is set again.
-                Frame& f = frames_.back();
-                if (!f.loops.empty()) {
-                    set(f.loops.back().broken, boolean(false));
-                    set(f.loops.back().continued, boolean(false));
-                } else {
-                    set(f.returned, boolean(false));
-                }
-                const int inside = parted ? 1 : depth == 0 ? std::numeric_limits<int>::min() : depth + 1;
-                reached = statements(list, n, inside);
-                return std::vector<Inst*>{};
-            },
-            [] { return std::vector<Inst*>{}; });
+        when(live, [&] {
+            // Inside, the flags are known to be off: no further guards until one is set again.
+            Frame& f = frames_.back();
+            if (!f.loops.empty()) {
+                set(f.loops.back().broken, boolean(false));
+                set(f.loops.back().continued, boolean(false));
+            } else {
+                set(f.returned, boolean(false));
+            }
+            const int inside = parted ? 1 : depth == 0 ? std::numeric_limits<int>::min() : depth + 1;
+            reached = statements(list, n, inside);
+        });
         if (depth != 0) return reached;
         n = reached;
     }
@@ -150,15 +101,10 @@ void Builder::statement(const Stmt& s) {
         return;
     case StmtKind::If: {
         Inst* c = condition(*s.condition);
-        branch(
-            c,
-            [&] {
-                statements(s.body, 0);
-                return std::vector<Inst*>{};
-            },
+        when(
+            c, [&] { statements(s.body, 0); },
             [&] {
                 if (s.elseBody) statement(*s.elseBody);
-                return std::vector<Inst*>{};
             });
         return;
     }
@@ -257,57 +203,29 @@ void Builder::turns(std::set<int>& assigned, bool jumps, const Turns& t, const P
     if (t.begin) t.begin();
     if (jumps) assigned.insert(flags.broken);
 
-    std::vector<int> carried;
     Inst* inst = k_.make(Op::Loop, Kind::None);
     inst->place = keptPlace(place);
     inst->regions.resize(2);
-    for (int n : assigned) {
-        const Symbol* s = symbols_[static_cast<size_t>(n)];
-        if (s && s->origin == Symbol::Origin::Global) get(n);
-        Inst* v = env_[static_cast<size_t>(n)];
-        if (!v || v->kind == Kind::Array) continue;
-        carried.push_back(n);
-        inst->args.push_back(v);
-        inst->results.push_back(v->kind);
+    const std::vector<int> carried = carry(inst, assigned);
+    {
+        Region& r = inst->regions[0];
+        const Scope scope(*this, r);
+        enterTurn(inst, r, carried);
+        Inst* test = t.goesOn();
+        r.yields.push_back(emit(Op::And, Kind::Bool, {emit(Op::Not, Kind::Bool, {get(flags.broken)}), test}));
     }
-    const size_t mark = log_.size();
-    const auto enter = [&](Region& r) {
-        region_ = &r;
-        for (size_t c = 0; c < carried.size(); ++c) {
-            Inst* p = k_.make(Op::RegionParam, inst->results[c]);
-            p->index = static_cast<int>(c);
-            r.params.push_back(p);
-            set(carried[c], p);
-        }
-    };
-    const auto leave = [&](Region* back) {
-        region_ = back;
-        while (log_.size() > mark) {
-            env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
-            log_.pop_back();
-        }
-    };
-    Region* saved = region_;
-    enter(inst->regions[0]);
-    Inst* test = t.goesOn();
-    test = emit(Op::And, Kind::Bool, {emit(Op::Not, Kind::Bool, {get(flags.broken)}), test});
-    inst->regions[0].yields.push_back(test);
-    leave(saved);
-
-    enter(inst->regions[1]);
-    frames_.back().loops.push_back(flags);
-    set(flags.continued, boolean(false));
-    t.turn();
-    frames_.back().loops.pop_back();
-    const auto next = [&] {
-        t.next();
-        return std::vector<Inst*>{};
-    };
-    if (t.next) branch(emit(Op::Not, Kind::Bool, {get(flags.broken)}), next, [] { return std::vector<Inst*>{}; });
-    for (int n : carried) inst->regions[1].yields.push_back(get(n));
-    leave(saved);
-    region_->body.push_back(inst);
-    for (size_t c = 0; c < carried.size(); ++c) set(carried[c], emit(Op::Result, inst->results[c], {inst}, static_cast<int>(c)));
+    {
+        Region& r = inst->regions[1];
+        const Scope scope(*this, r);
+        enterTurn(inst, r, carried);
+        frames_.back().loops.push_back(flags);
+        set(flags.continued, boolean(false));
+        t.turn();
+        frames_.back().loops.pop_back();
+        if (t.next) when(emit(Op::Not, Kind::Bool, {get(flags.broken)}), t.next);
+        for (int n : carried) r.yields.push_back(get(n));
+    }
+    leaveLoop(inst, carried);
 }
 
 void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Function*>& seen) {

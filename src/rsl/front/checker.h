@@ -78,6 +78,10 @@ private:
     void check(StmtPtr&);
     void checkDeclare(Stmt&);
     void checkLight(Stmt&);
+    size_t lightPositions(Stmt&, std::vector<ExprPtr>& given);
+    bool isGivenString(const std::vector<ExprPtr>& given, size_t i) const;
+    void checkReturn(Stmt&);
+    void checkLightBody(Stmt&);
     void checkLoopBody(Stmt&);
     void condition(ExprPtr&);
     void valueOf(ExprPtr&, Type, bool handle = false);
@@ -94,7 +98,12 @@ private:
     void inferAssign(Expr&, Info&);
     void inferConditional(Expr&, Info&);
     void inferCast(Expr&, Info&);
+    void inferUnary(Expr&, Info&);
+    void inferTuple(Expr&, Info&);
+    struct Candidates;
     void inferCall(Expr&, Info&);
+    void inferResults(const Expr& call, Info&);
+    void unknownFunction(const Expr& call);
     void inferMember(Expr&, Info&);
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, const ParameterView& wanted, bool ignoreOutputs);
@@ -123,6 +132,9 @@ private:
     void resolveTypes(ExprPtr&, Type, Handle = Handle::Text); ///< to this type, with conversions
     void resolveCheapest(ExprPtr&);
     void resolveAs(ExprPtr&, Base); ///< exactly this type, which must have a finite cost
+    void resolveParts(ExprPtr&, Base);
+    void resolveHandle(ExprPtr&, Base);
+    void resolveCast(ExprPtr&, Base);
     void resolveIndexed(ExprPtr&);
     void resolveCondition(ExprPtr&);
     void resolveArray(ExprPtr&, Type, Handle = Handle::Either);
@@ -133,6 +145,13 @@ private:
     void optionalArguments(Expr&, const Shadeop&);
     void resolvePairs(Expr&, size_t positional, const Shadeop*);
     void bindShadeop(Expr&, const Choice&);
+    void bindChannel(const Expr&);
+    void bindPrimitiveVariable(const Expr&);
+    void bindArrayChange(const Expr&);
+    bool allowedHere(const Expr&);
+    void classOfResult(Expr&, const Choice&);
+    void bindText(Expr&, const Choice&);
+    std::pair<std::string, std::string> checkTextPairs(const Expr&);
     bool uniformResult(const Expr&, const Choice&) const;
     void convert(ExprPtr&, Type);
     void written(const Expr& variable);

@@ -58,6 +58,46 @@ std::string Checker::named(Type t, Handle h) {
     return "shader" + s.substr(std::string("string").size());
 }
 
+void Checker::inferUnary(Expr& e, Info& info) {
+    const Info& a = infer(*e.args[0]);
+    if (a.any) {
+        info.any = true;
+        return;
+    }
+    if (e.op == ExprOp::Not) {
+        int c = kNever;
+        for (Base b : kAll) c = std::min(c, sum(a.cost[int(b)], conditionCost(b)));
+        info.cost[int(Base::Bool)] = c;
+    } else {
+        info.cost[int(Base::Float)] = std::min(a.cost[int(Base::Float)], sum(a.cost[int(Base::Bool)], 4));
+        for (Base b : kTuples) info.cost[int(b)] = a.cost[int(b)];
+        info.either = a.either;
+        info.number = a.number;
+    }
+    if (cheapest(info) != Base::Void) return;
+    sources_.report(e.place, msg::kBadOperand(spelling(e.op), describe(*e.args[0])));
+    poison(e, info);
+}
+
+/// (a, b, c), or sixteen numbers of a matrix.
+void Checker::inferTuple(Expr& e, Info& info) {
+    int cost = 0;
+    if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser has reported it
+    for (auto& a : e.args) {
+        const Info& i = infer(*a);
+        const int c = costTo(i, Base::Float);
+        if (c >= kNever) {
+            sources_.report(a->place, msg::kBadComponent(describe(*a)));
+            poison(e, info);
+        }
+        cost = sum(cost, c);
+    }
+    if (info.any) return;
+    if (e.kind == ExprKind::MatrixTuple) info.cost[int(Base::Matrix)] = cost;
+    else
+        for (Base b : kTuples) info.cost[int(b)] = cost;
+}
+
 Checker::Info& Checker::infer(Expr& e) {
     Info& info = infos_[&e]; // references into the map stay valid
     info = Info();
@@ -75,28 +115,9 @@ Checker::Info& Checker::infer(Expr& e) {
     case ExprKind::Index:
         inferIndex(e, info);
         break;
-    case ExprKind::Unary: {
-        const Info& a = infer(*e.args[0]);
-        if (a.any) {
-            info.any = true;
-            break;
-        }
-        if (e.op == ExprOp::Not) {
-            int c = kNever;
-            for (Base b : kAll) c = std::min(c, sum(a.cost[int(b)], conditionCost(b)));
-            info.cost[int(Base::Bool)] = c;
-        } else {
-            info.cost[int(Base::Float)] = std::min(a.cost[int(Base::Float)], sum(a.cost[int(Base::Bool)], 4));
-            for (Base b : kTuples) info.cost[int(b)] = a.cost[int(b)];
-            info.either = a.either;
-            info.number = a.number;
-        }
-        if (cheapest(info) == Base::Void) {
-            sources_.report(e.place, msg::kBadOperand(spelling(e.op), describe(*e.args[0])));
-            poison(e, info);
-        }
+    case ExprKind::Unary:
+        inferUnary(e, info);
         break;
-    }
     case ExprKind::Binary:
         inferBinary(e, info);
         break;
@@ -107,24 +128,9 @@ Checker::Info& Checker::infer(Expr& e) {
         inferConditional(e, info);
         break;
     case ExprKind::Tuple:
-    case ExprKind::MatrixTuple: {
-        int cost = 0;
-        if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser has reported it
-        for (auto& a : e.args) {
-            const Info& i = infer(*a);
-            const int c = costTo(i, Base::Float);
-            if (c >= kNever) {
-                sources_.report(a->place, msg::kBadComponent(describe(*a)));
-                poison(e, info);
-            }
-            cost = sum(cost, c);
-        }
-        if (info.any) break;
-        if (e.kind == ExprKind::MatrixTuple) info.cost[int(Base::Matrix)] = cost;
-        else
-            for (Base b : kTuples) info.cost[int(b)] = cost;
+    case ExprKind::MatrixTuple:
+        inferTuple(e, info);
         break;
-    }
     case ExprKind::ArrayList:
         info.listLength = int(e.args.size());
         info.handle = Handle::Either;

@@ -89,6 +89,10 @@ private:
     bool plugin(); ///< at `plugin "name"`, allowed at file level and in place of a statement
     void extends(StructType&);
     void structure(); // parser_objects.cpp
+    void structureBody(StructType&, std::vector<size_t>& methods);
+    void structureMember(StructType&, std::vector<size_t>& methods);
+    void structureMethods(size_t index, const std::vector<size_t>& methods);
+    void skipMethod(size_t begin, std::vector<size_t>& methods);
     void shaderObject();
     void takeAccess();
     std::unique_ptr<Function> function(const Specifiers&, Type, bool typed);
@@ -109,6 +113,12 @@ private:
     void statements(Stmt& block);
     StmtPtr statement();
     StmtPtr statementOnce();
+    StmtPtr keywordStatement();
+    StmtPtr conditional(StmtKind);
+    StmtPtr jump(StmtKind);
+    StmtPtr returnStatement();
+    bool atDeclaration();
+    void refuseTypeName();
     StmtPtr declaration(bool member = false);
     StmtPtr forLoop();
     StmtPtr doLoop();

@@ -19,76 +19,62 @@ void Parser::extends(StructType& type) {
     }
 }
 
-/// At "struct": struct Name { members }; or struct Name : Other { members };
-void Parser::structure() {
-    const size_t begins = at_;
+/// Notes where a method begins, at "(", and goes on behind it: it is read once all members are known.
+void Parser::skipMethod(size_t begin, std::vector<size_t>& methods) {
+    methods.push_back(begin);
     take();
-    if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a structure", shown()));
-    const Token& name = take();
-    StructType type;
-    extends(type);
-    const size_t inherited = type.members.size();
-    if (!at("{")) failHere(msg::kExpectedToken("'{' of structure '" + std::string(name.text) + "'", shown()));
-    take();
-    type.name = std::string(name.text);
-    type.place = name.place;
-    const int errors = sources_.errors();
-    std::vector<size_t> methods; // read once all members are known
-    const auto skipMethod = [&](size_t begin) {
-        methods.push_back(begin);
+    skipBalanced();
+    if (at("{")) skipBalanced();
+    else expectSemicolon("the parameters of a method");
+}
+
+/// At a type: one member or several of that type, or a method.
+void Parser::structureMember(StructType& type, std::vector<size_t>& methods) {
+    takeAccess();
+    const size_t begin = at_;
+    const Specifiers s = specifiers();
+    const auto call = [&](size_t name) { return peek(name).kind == Tok::Identifier && peek(name + 1).is("("); };
+    if (call(0)) return skipMethod(begin, methods);
+    if (at(type.name) && call(1)) {
         take();
-        skipBalanced();
-        if (at("{")) skipBalanced();
-        else expectSemicolon("the parameters of a method");
-    };
+        return skipMethod(begin, methods);
+    }
+    if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier) fail(peek().place, msg::kStructRecursive);
+    if (!atTypeName()) failHere(msg::kExpectedMemberType(shown()));
+    const Base base = takeBase();
+    const bool handle = handle_;
+    if (call(0)) return skipMethod(begin, methods);
+    if (at("[") && peek(1).is("]") && call(2)) {
+        take(), take();
+        return skipMethod(begin, methods);
+    }
+    if (base == Base::Void) fail(s.place, msg::kStructVoid);
+    const ExprPtr space = declaredSpace(base);
+    const Type group = dimensions({base, 0});
+    do {
+        if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a member", shown()));
+        StructMember m;
+        m.place = peek().place;
+        m.name = std::string(take().text);
+        m.type = dimensions(group);
+        m.handle = handle;
+        m.storage = s.storage;
+        if (accept("=")) m.init = inSpace(at("{") ? arrayList() : assignment(), base, space.get());
+        for (const StructMember& other : type.members)
+            if (other.name == m.name) sources_.report(m.place, msg::kTwoMembers(m.name));
+        type.members.push_back(std::move(m));
+    } while (accept(","));
+    if (!at("}")) expectSemicolon("a member");
+}
+
+/// The members, up to "}". Where methods begin goes to `methods`.
+void Parser::structureBody(StructType& type, std::vector<size_t>& methods) {
     while (!accept("}")) {
         if (peek().kind == Tok::End) failHere(msg::kExpectedToken("'}' of structure '" + type.name + "'", shown()));
         const size_t before = at_;
         try {
             if (accept(";") || accept(",")) continue;
-            takeAccess();
-            const size_t begin = at_;
-            const Specifiers s = specifiers();
-            if (peek().kind == Tok::Identifier && peek(1).is("(")) {
-                skipMethod(begin);
-                continue;
-            }
-            if (at(type.name) && peek(1).kind == Tok::Identifier && peek(2).is("(")) {
-                take();
-                skipMethod(begin);
-                continue;
-            }
-            if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier)
-                fail(peek().place, msg::kStructRecursive);
-            if (!atTypeName()) failHere(msg::kExpectedMemberType(shown()));
-            const Base base = takeBase();
-            const bool handle = handle_;
-            if (peek().kind == Tok::Identifier && peek(1).is("(")) {
-                skipMethod(begin);
-                continue;
-            }
-            if (at("[") && peek(1).is("]") && peek(2).kind == Tok::Identifier && peek(3).is("(")) {
-                take(), take();
-                skipMethod(begin);
-                continue;
-            }
-            if (base == Base::Void) fail(s.place, msg::kStructVoid);
-            const ExprPtr space = declaredSpace(base);
-            const Type group = dimensions({base, 0});
-            do {
-                if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a member", shown()));
-                StructMember m;
-                m.place = peek().place;
-                m.name = std::string(take().text);
-                m.type = dimensions(group);
-                m.handle = handle;
-                m.storage = s.storage;
-                if (accept("=")) m.init = inSpace(at("{") ? arrayList() : assignment(), base, space.get());
-                for (const StructMember& other : type.members)
-                    if (other.name == m.name) sources_.report(m.place, msg::kTwoMembers(m.name));
-                type.members.push_back(std::move(m));
-            } while (accept(","));
-            if (!at("}")) expectSemicolon("a member");
+            structureMember(type, methods);
         } catch (const SyntaxError&) {
             if (tooDeep_) throw;
             recover();
@@ -97,24 +83,11 @@ void Parser::structure() {
         }
     }
     accept(";");
-    for (size_t i = begins; i < at_ && sources_.errors() == errors; ++i) {
-        type.text += tokens_[i].text;
-        type.text += ' ';
-    }
-    if (const auto old = structs_.find(type.name); old != structs_.end() && !type.text.empty()) // two files brought the same one
-        if (unit_.structs[size_t(old->second)].text == type.text) return;
-    const bool empty = type.members.size() == inherited && type.base < 0 && methods.empty();
-    if (empty && sources_.errors() == errors) sources_.report(type.place, msg::kStructEmpty(type.name));
-    if (unit_.structs.size() >= size_t(limits::kStructs)) {
-        sources_.report(type.place, msg::kStructCount(limits::kStructs));
-        unit_.incomplete = true;
-        return;
-    }
-    if (const auto old = structs_.find(type.name); old != structs_.end())
-        sources_.report(type.place, msg::kStructRedefined(type.name));
-    structs_[type.name] = int(unit_.structs.size());
-    const size_t index = unit_.structs.size(), behind = at_;
-    unit_.structs.push_back(std::move(type));
+}
+
+/// Methods of the structure, by the places where they begin.
+void Parser::structureMethods(size_t index, const std::vector<size_t>& methods) {
+    const size_t behind = at_;
     const bool inObject = std::exchange(inObject_, false);
     for (const size_t begin : methods) {
         at_ = begin;
@@ -134,6 +107,43 @@ void Parser::structure() {
     }
     inObject_ = inObject;
     at_ = behind;
+}
+
+/// At "struct": struct Name { members }; or struct Name : Other { members };
+void Parser::structure() {
+    const size_t begins = at_;
+    take();
+    if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a structure", shown()));
+    const Token& name = take();
+    StructType type;
+    extends(type);
+    const size_t inherited = type.members.size();
+    if (!at("{")) failHere(msg::kExpectedToken("'{' of structure '" + std::string(name.text) + "'", shown()));
+    take();
+    type.name = std::string(name.text);
+    type.place = name.place;
+    const int errors = sources_.errors();
+    std::vector<size_t> methods;
+    structureBody(type, methods);
+    for (size_t i = begins; i < at_ && sources_.errors() == errors; ++i) {
+        type.text += tokens_[i].text;
+        type.text += ' ';
+    }
+    if (const auto old = structs_.find(type.name); old != structs_.end() && !type.text.empty()) // two files brought the same one
+        if (unit_.structs[size_t(old->second)].text == type.text) return;
+    const bool empty = type.members.size() == inherited && type.base < 0 && methods.empty();
+    if (empty && sources_.errors() == errors) sources_.report(type.place, msg::kStructEmpty(type.name));
+    if (unit_.structs.size() >= size_t(limits::kStructs)) {
+        sources_.report(type.place, msg::kStructCount(limits::kStructs));
+        unit_.incomplete = true;
+        return;
+    }
+    if (const auto old = structs_.find(type.name); old != structs_.end())
+        sources_.report(type.place, msg::kStructRedefined(type.name));
+    const size_t index = unit_.structs.size();
+    structs_[type.name] = int(index);
+    unit_.structs.push_back(std::move(type));
+    structureMethods(index, methods);
 }
 
 /// "public" and "private" of members: what is public is what others see, and the rest they do not; nothing else depends on it

@@ -209,6 +209,75 @@ void Checker::resolveVariable(ExprPtr& e) {
     resolveAs(e, cheapest(info));
 }
 
+/// A member or a method of another shader. Its arguments stay as they are: what it takes is known when that is bound.
+void Checker::resolveHandle(ExprPtr& e, Base t) {
+    resolveTypes(e->args[0], {Base::String, 0}, Handle::Shader);
+    for (size_t i = 1; i < e->args.size(); ++i) {
+        if (isVariable(*e->args[i])) resolveVariable(e->args[i]);
+        else resolveCheapest(e->args[i]);
+    }
+    e->type = {t, 0};
+    e->varying = true;
+    if (function_) varyingFunctions_.insert(function_);
+    program_.handles = true;
+}
+
+void Checker::resolveCast(ExprPtr& e, Base t) {
+    if (e->space) resolveTypes(e->space, {Base::String, 0});
+    const Info& a = infos_.at(e->args[0].get());
+    Base best = t;
+    int cost = kNever;
+    for (Base b : kAllBases) {
+        const int c = a.cost[int(b)] + castCost(b, t);
+        if (c < cost) {
+            cost = c;
+            best = b;
+        }
+    }
+    resolveAs(e->args[0], best);
+    becomesTuple(a, *e->args[0], t);
+    Expr& inner = *e->args[0];
+    if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space)
+        inner.space = std::move(e->space);
+    if (e->space || inner.type != Type{t, 0}) {
+        e->type = {t, 0};
+        return finish(*e);
+    }
+    // Nothing to convert: the word chose the reading.
+    ExprPtr value = std::move(e->args[0]);
+    finish(*value);
+    if (value->kind == ExprKind::ShadeopCall || value->kind == ExprKind::FunctionCall || value->kind == ExprKind::Variable)
+        value->varying = value->varying || inner.varying;
+    e = std::move(value);
+}
+
+/// What is varying where its parts are.
+void Checker::resolveParts(ExprPtr& e, Base t) {
+    switch (e->kind) {
+    case ExprKind::Unary:
+        if (e->op == ExprOp::Not) resolveCondition(e->args[0]);
+        else resolveTypes(e->args[0], {t, 0});
+        break;
+    case ExprKind::Sequence:
+        for (size_t i = 0; i + 1 < e->args.size(); ++i) resolveCheapest(e->args[i]);
+        resolveAs(e->args.back(), t);
+        e->type = e->args.back()->type;
+        return finish(*e);
+    case ExprKind::Conditional:
+        resolveCondition(e->args[0]);
+        // Truth values are no values: 0 and 1 where they meet as results.
+        if (t == Base::Bool) t = Base::Float;
+        resolveTypes(e->args[1], {t, 0}, Handle::Either);
+        resolveTypes(e->args[2], {t, 0}, Handle::Either);
+        break;
+    default: // tuples
+        for (auto& a : e->args) resolveTypes(a, {Base::Float, 0});
+        break;
+    }
+    e->type = {t, 0};
+    finish(*e);
+}
+
 void Checker::resolveAs(ExprPtr& e, Base t) {
     const Info& info = infos_.at(e.get());
     if (info.any) {
@@ -231,90 +300,30 @@ void Checker::resolveAs(ExprPtr& e, Base t) {
         resolveIndexed(e->args[0]);
         resolveTypes(e->args[1], {Base::Float, 0});
         e->type = {t, 0};
-        if (e->args[0]->kind == ExprKind::Member) {
-            e->varying = true;
-            return;
-        }
-        break;
-    case ExprKind::Unary:
-        if (e->op == ExprOp::Not) resolveCondition(e->args[0]);
-        else resolveTypes(e->args[0], {t, 0});
-        e->type = {t, 0};
-        break;
-    case ExprKind::Sequence:
-        for (size_t i = 0; i + 1 < e->args.size(); ++i) resolveCheapest(e->args[i]);
-        resolveAs(e->args.back(), t);
-        e->type = e->args.back()->type;
-        break;
+        finish(*e);
+        if (e->args[0]->kind == ExprKind::Member) e->varying = true;
+        return;
     case ExprKind::Member:
     case ExprKind::Method:
-        resolveTypes(e->args[0], {Base::String, 0}, Handle::Shader);
-        for (size_t i = 1; i < e->args.size(); ++i) {
-            if (isVariable(*e->args[i])) resolveVariable(e->args[i]);
-            else resolveCheapest(e->args[i]);
-        }
-        e->type = {t, 0};
-        e->varying = true;
-        if (function_) varyingFunctions_.insert(function_);
-        program_.handles = true;
-        return;
+        return resolveHandle(e, t);
     case ExprKind::Binary:
-        resolveBinary(e, t);
-        return;
+        return resolveBinary(e, t);
     case ExprKind::Assign:
-        resolveAssign(e);
-        return;
+        return resolveAssign(e);
+    case ExprKind::Cast:
+        return resolveCast(e, t);
+    case ExprKind::ShadeopCall:
+        return resolveCall(e, {t, 0});
+    case ExprKind::Unary:
+    case ExprKind::Sequence:
     case ExprKind::Conditional:
-        resolveCondition(e->args[0]);
-        // Truth values are no values: 0 and 1 where they meet as results.
-        if (t == Base::Bool) t = Base::Float;
-        resolveTypes(e->args[1], {t, 0}, Handle::Either);
-        resolveTypes(e->args[2], {t, 0}, Handle::Either);
-        e->type = {t, 0};
-        break;
     case ExprKind::Tuple:
     case ExprKind::MatrixTuple:
-        for (auto& a : e->args) resolveTypes(a, {Base::Float, 0});
-        e->type = {t, 0};
-        break;
-    case ExprKind::Cast: {
-        if (e->space) resolveTypes(e->space, {Base::String, 0});
-        const Info& a = infos_.at(e->args[0].get());
-        Base best = t;
-        int cost = kNever;
-        for (Base b : kAllBases) {
-            const int c = a.cost[int(b)] + castCost(b, t);
-            if (c < cost) {
-                cost = c;
-                best = b;
-            }
-        }
-        resolveAs(e->args[0], best);
-        becomesTuple(a, *e->args[0], t);
-        Expr& inner = *e->args[0];
-        if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space)
-            inner.space = std::move(e->space);
-        if (!e->space && inner.type == Type{t, 0}) {
-            // Nothing to convert: the word chose the reading.
-            ExprPtr value = std::move(e->args[0]);
-            finish(*value);
-            if (value->kind == ExprKind::ShadeopCall || value->kind == ExprKind::FunctionCall ||
-                value->kind == ExprKind::Variable)
-                value->varying = value->varying || inner.varying;
-            e = std::move(value);
-            return;
-        }
-        e->type = {t, 0};
-        break;
-    }
-    case ExprKind::ShadeopCall:
-        resolveCall(e, {t, 0});
-        return;
+        return resolveParts(e, t);
     case ExprKind::ArrayList:
     case ExprKind::FunctionCall:
         return;
     }
-    finish(*e);
 }
 
 void Checker::resolveBinary(ExprPtr& e, Base t) {

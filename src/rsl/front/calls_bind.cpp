@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "rsl/front/checker.h"
 #include "rsl/front/protocol.h"
+#include "rsl/front/writes.h"
 #include <algorithm>
 #include <cstdlib>
 #include <set>
@@ -98,8 +99,7 @@ void Checker::classOfResult(Expr& e, const Choice& choice) {
     if (uniformResult(e, choice)) {
         e.varying = false; // a length is that of all points
         for (size_t i = 0; i < e.args.size() && op.section != "Arrays"; ++i)
-            if (!choice.signature->parameters[std::min(i, choice.signature->parameters.size() - 1)].output)
-                e.varying |= e.args[i]->varying;
+            if (writesArgument(e, i) == Writes::No) e.varying |= e.args[i]->varying;
     } else if (op.lowering != Lowering::Runtime && op.lowering != Lowering::Special && op.lowering != Lowering::Rsl &&
                op.name != "format" && op.name != "concat") {
         e.varying = true;

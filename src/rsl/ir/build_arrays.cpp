@@ -2,6 +2,8 @@
 // values like those of variables: each point has its own. What does not fit into the storage is kept by whoever runs the kernel
 // (spilledarrays.h), and reached by services; such elements have no derivatives.
 #include "base/limits.h"
+#include "rsl/front/visit.h"
+#include "rsl/front/writes.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
@@ -57,50 +59,25 @@ int Builder::largestResize() {
         if (e.kind != ExprKind::Number) n = std::min(n, static_cast<double>(limits::kResizableArray) * 16);
         largestResize_ = std::max(largestResize_, static_cast<int>(std::clamp(n, 0.0, 1e6)));
     };
-    const auto visitExpr = [&](auto&& self, const Expr& e) -> void {
-        const auto grows = [&](const Expr& a) {
-            if (a.kind == ExprKind::Variable && a.symbol) grown_.insert(a.symbol);
-        };
+    const auto grows = [&](const Expr& a) {
+        if (a.kind == ExprKind::Variable && a.symbol) grown_.insert(a.symbol);
+    };
+    const auto expression = [&](const Expr& e) {
         if (e.kind == ExprKind::Assign) grows(*e.args[0]);
-        for (size_t n = 0; n < e.args.size(); ++n) {
-            const bool output = e.signature
-                                    ? n < e.signature->parameters.size() && e.signature->parameters[n].output
-                                    : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
-            const bool other = e.kind == ExprKind::Method; // its parameters are not known yet
-            if ((output || other) && e.args[n]) grows(*e.args[n]);
-        }
+        for (size_t n = 0; n < e.args.size(); ++n)
+            if (e.args[n] && front::writesArgument(e, n) != front::Writes::No) grows(*e.args[n]);
         if (e.shadeop && e.shadeop->name == "push") unbound_ = true;
         const bool sizes = e.shadeop && (e.shadeop->name == "resize" || e.shadeop->name == "reserve") && e.args.size() == 2;
         if (sizes) wanted(*e.args[1]);
         if (sizes) unbound_ |= e.args[1]->kind != ExprKind::Number || e.args[1]->number > limits::kShaderArray;
-        for (const ExprPtr& a : e.args)
-            if (a) self(self, *a);
-        for (const NamedArg& p : e.pairs)
-            if (p.value) self(self, *p.value);
     };
-    const auto visit = [&](auto&& self, const Stmt& s) -> void {
-        for (const StmtPtr& b : s.body)
-            if (b) self(self, *b);
-        if (s.elseBody) self(self, *s.elseBody);
-        for (const ExprPtr* p : {&s.condition, &s.init, &s.step, &s.value})
-            if (*p) visitExpr(visitExpr, **p);
-        for (const Stmt::Declarator& d : s.declarators)
-            if (d.init) visitExpr(visitExpr, *d.init);
+    const auto body = [&](const Stmt& s) { front::everyExpr(s, expression); };
+    const auto program = [&](const Program& p, const Shader& s) {
+        front::everyBody(s, body);
+        for (const auto& f : p.functions) front::everyFunctionBody(*f, body);
     };
-    const auto functions = [&](auto&& self, const std::vector<std::unique_ptr<Function>>& list) -> void {
-        for (const auto& f : list) {
-            if (f->body) visit(visit, *f->body);
-            self(self, f->nested);
-        }
-    };
-    if (shader_.body) visit(visit, *shader_.body);
-    functions(functions, shader_.nested);
-    functions(functions, program_.functions);
-    for (const CoShader& c : options_.coShaders) {
-        if (c.shader->body) visit(visit, *c.shader->body);
-        functions(functions, c.shader->nested);
-        functions(functions, c.program->functions);
-    }
+    program(program_, shader_);
+    for (const CoShader& c : options_.coShaders) program(*c.program, *c.shader);
     return largestResize_;
 }
 

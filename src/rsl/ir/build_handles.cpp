@@ -14,18 +14,12 @@ namespace {
 /// Is `this`, `surface` or `caller` used as a value, and not only to name what belongs to it?
 bool handsItselfOver(const Shader& s, const Program& p) {
     bool found = false;
-    const auto body = [&](const Stmt* b) {
-        if (b)
-            front::everyStmt(
-                *b, [](const Stmt&) {},
-                [&](const Expr& e) {
-                    found |= e.kind == ExprKind::String && e.handle &&
-                             (e.text == "(this)" || e.text == "(surface)" || e.text == "(caller)");
-                });
+    const auto look = [&](const Expr& e) {
+        found |= e.kind == ExprKind::String && e.handle && (e.text == "(this)" || e.text == "(surface)" || e.text == "(caller)");
     };
-    body(s.body.get());
-    for (const auto& n : s.nested) front::everyFunction(*n, [&](const Function& f) { body(f.body.get()); });
-    for (const auto& n : p.functions) front::everyFunction(*n, [&](const Function& f) { body(f.body.get()); });
+    const auto body = [&](const Stmt& b) { front::everyExpr(b, look); };
+    front::everyBody(s, body);
+    for (const auto& f : p.functions) front::everyFunctionBody(*f, body);
     return found;
 }
 

@@ -1,4 +1,6 @@
 // Statements: assignments become values, jumps become guards.
+#include "rsl/front/visit.h"
+#include "rsl/front/writes.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <limits>
@@ -149,10 +151,9 @@ namespace {
 
 /// Whether the statement may jump: any break, continue or return below it, functions excluded.
 bool mayJump(const Stmt& s) {
-    if (s.kind == StmtKind::Break || s.kind == StmtKind::Continue || s.kind == StmtKind::Return) return true;
-    for (const StmtPtr& b : s.body)
-        if (b && mayJump(*b)) return true;
-    return s.elseBody && mayJump(*s.elseBody);
+    bool found = s.kind == StmtKind::Break || s.kind == StmtKind::Continue || s.kind == StmtKind::Return;
+    front::eachBody(s, [&](const StmtPtr& b) { found = found || mayJump(*b); });
+    return found;
 }
 
 } // namespace
@@ -228,63 +229,45 @@ void Builder::turns(std::set<int>& assigned, bool jumps, const Turns& t, const P
     leaveLoop(inst, carried);
 }
 
+/// Outputs of the kernel that a call sets by their names.
+void Builder::scanChannels(const Expr& call, std::set<int>& out) {
+    const std::string& op = call.shadeop->name;
+    if (op == "subsurface")
+        for (const int n : enteringSlots()) out.insert(n);
+    if (op != "outputchannel" && op != "writeaov") return;
+    if (call.args[0]->kind == ExprKind::String) {
+        if (const int n = channelSlot(call.args[0]->text, call.args[1]->type); n >= 0) out.insert(n);
+        return;
+    }
+    // The name is known when the call is built: any of them.
+    for (const auto& [name, channel] : channels_) out.insert(channel.first);
+    for (const ShaderParameter& p : shader_.parameters)
+        if (p.symbol->output && !p.symbol->type.array) out.insert(slot(p.symbol));
+}
+
 void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Function*>& seen) {
-    const auto lvalue = [&](const Expr* l) {
-        while (l && l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
-        if (l && l->kind == ExprKind::Cast && !l->args.empty()) l = l->args[0].get();
-        if (l && l->kind == ExprKind::Variable && l->symbol) out.insert(slot(l->symbol));
+    const auto written = [&](const Expr& place) {
+        if (const Symbol* s = front::rootOf(place)) out.insert(slot(s));
     };
-    if (e.kind == ExprKind::Assign) lvalue(e.args[0].get());
     if (e.kind == ExprKind::Method) {
         for (size_t n = 1; n < e.args.size(); ++n)
-            if (mayFill(e, n)) lvalue(e.args[n].get());
+            if (mayFill(e, n)) written(*e.args[n]);
         scanMethod(e, out);
+    } else {
+        front::eachWritten(e, written);
     }
-    if (e.kind == ExprKind::ShadeopCall && e.signature)
-        for (size_t n = 0; n < e.args.size() && n < e.signature->parameters.size(); ++n)
-            if (e.signature->parameters[n].output) lvalue(e.args[n].get());
-    if (e.kind == ExprKind::ShadeopCall && e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov")) {
-        const bool literal = e.args[0]->kind == ExprKind::String;
-        if (literal) {
-            if (const int n = channelSlot(e.args[0]->text, e.args[1]->type); n >= 0) out.insert(n);
-        } else { // the name is known when the call is built: any of them
-            for (const auto& [name, channel] : channels_) out.insert(channel.first);
-            for (const ShaderParameter& p : shader_.parameters)
-                if (p.symbol->output && !p.symbol->type.array) out.insert(slot(p.symbol));
-        }
-    }
-    if (e.kind == ExprKind::ShadeopCall && e.shadeop && e.shadeop->name == "subsurface")
-        for (const int n : enteringSlots()) out.insert(n);
-    for (const NamedArg& p : e.pairs)
-        if (p.output && p.value) lvalue(p.value.get());
-    if (e.function) {
-        for (size_t n = 0; n < e.args.size() && n < e.function->parameters.size(); ++n)
-            if (e.function->parameters[n]->output) lvalue(e.args[n].get());
-        if (seen.insert(e.function).second && e.function->body) scanAssigned(*e.function->body, out, seen);
-    }
-    for (const ExprPtr& a : e.args)
-        if (a) scanAssigned(*a, out, seen);
-    for (const NamedArg& p : e.pairs)
-        if (p.value) scanAssigned(*p.value, out, seen);
-    for (const ExprPtr* p : {&e.space, &e.channel})
-        if (*p) scanAssigned(**p, out, seen);
+    if (e.kind == ExprKind::ShadeopCall && e.shadeop) scanChannels(e, out);
+    if (e.function && seen.insert(e.function).second && e.function->body) scanAssigned(*e.function->body, out, seen);
+    front::eachPart(e, [&](const Expr& x) { scanAssigned(x, out, seen); });
 }
 
 void Builder::scanAssigned(const Stmt& s, std::set<int>& out, std::set<const Function*>& seen) {
-    for (const StmtPtr& b : s.body)
-        if (b) scanAssigned(*b, out, seen);
-    if (s.elseBody) scanAssigned(*s.elseBody, out, seen);
-    for (const ExprPtr* p : {&s.condition, &s.init, &s.step, &s.value, &s.category})
-        if (*p) scanAssigned(**p, out, seen);
-    for (const ExprPtr& e : s.exprs)
-        if (e) scanAssigned(*e, out, seen);
-    for (const Stmt::Declarator& d : s.declarators)
-        if (d.init) scanAssigned(*d.init, out, seen);
-    for (const NamedArg& p : s.pairs)
-        if (p.value) {
-            scanAssigned(*p.value, out, seen);
-            if (p.output && p.value->kind == ExprKind::Variable && p.value->symbol) out.insert(slot(p.value->symbol));
-        }
+    // What stands inside first: slots are numbered in this order.
+    front::eachBody(s, [&](const StmtPtr& b) { scanAssigned(*b, out, seen); });
+    front::eachPart(s, [&](const Expr& e) { scanAssigned(e, out, seen); });
+    front::eachWritten(s, [&](const Expr& place) {
+        if (place.kind == ExprKind::Variable && place.symbol) out.insert(slot(place.symbol));
+    });
     for (const LightBlock& b : lightBlocks_)
         if (b.stmt == &s) out.insert({b.L, b.Cl, b.Ol, b.lit});
 }
@@ -292,12 +275,10 @@ void Builder::scanAssigned(const Stmt& s, std::set<int>& out, std::set<const Fun
 bool Builder::hasEffects(const Expr& e) {
     if (e.kind == ExprKind::Assign || e.kind == ExprKind::FunctionCall || e.kind == ExprKind::Method || e.function) return true;
     if (e.kind == ExprKind::ShadeopCall && (!e.shadeop || e.shadeop->lowering != Lowering::Runtime)) return true;
-    if (e.kind == ExprKind::ShadeopCall && e.signature)
-        for (const Parameter& p : e.signature->parameters)
-            if (p.output) return true;
-    for (const ExprPtr& a : e.args)
-        if (a && hasEffects(*a)) return true;
-    return false;
+    bool found = false;
+    front::eachWritten(e, [&](const Expr&) { found = true; });
+    front::eachPart(e, [&](const Expr& x) { found = found || hasEffects(x); });
+    return found;
 }
 
 } // namespace alpenglow::rsl::ir

@@ -95,6 +95,7 @@ private:
     Inst* alive();
     void scanAssigned(const Stmt&, std::set<int>& out, std::set<const Function*>& seen);
     void scanAssigned(const Expr&, std::set<int>& out, std::set<const Function*>& seen);
+    void scanChannels(const Expr& call, std::set<int>& out);
     bool hasEffects(const Expr&);
     /// Loop or LightLoop around `body`: `fixed` region parameters come before the carried ones.
     struct LoopFrame {

@@ -26,9 +26,8 @@ std::string storageText(rsl::Storage s) { return s == rsl::Storage::Varying ? "v
 /// The type as the shader writes it: handles are of type shader, arrays of open length have none.
 std::string typeText(rsl::Type t, const rsl::Symbol* s) {
     if (s && (s->type.array < 0 || s->open || s->resizable)) t.array = -1;
-    std::string text = rsl::toString(t);
-    if (s && s->handle && text.rfind("string", 0) == 0) text.replace(0, 6, "shader");
-    return text;
+    if (s && s->type.base == rsl::Base::Shader) t.base = rsl::Base::Shader; // parameters have the types that scenes give
+    return rsl::toString(t);
 }
 
 /// Does the value depend on nothing but numbers and texts in the shader?
@@ -141,7 +140,7 @@ DefaultDescription describeDefault(const rsl::ShaderParameter& p, const rsl::Par
     d.value = std::move(value);
     d.computed = computed;
     const rsl::Expr* e = p.defaultValue.get();
-    d.null = p.symbol->handle && p.symbol->type.array == 0 && d.value.strings == std::vector<std::string>{""};
+    d.null = p.symbol->type == rsl::Type{rsl::Base::Shader, 0} && d.value.strings == std::vector<std::string>{""};
     d.named = e && !d.written.empty() && asks(*e);
     if (e && e->kind == rsl::ExprKind::ArrayList && e->text == "{}")
         d.value.strings.clear(), d.value.numbers.clear(); // {} has no elements

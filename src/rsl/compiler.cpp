@@ -80,10 +80,10 @@ ShaderPtr ShaderCompiler::describe(std::shared_ptr<const Program> program, const
     c->source_ = source;
     c->digest_ = jit::sha256(source + '\3' + shader.name + '\1' + toString(shader.kind));
     for (const ShaderParameter& p : c->shader_->parameters) {
-        ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr,
-                        p.symbol->place};
+        ParameterInfo i{p.symbol->name,   storedType(p.symbol->type), p.symbol->storage,
+                        p.symbol->output, p.defaultValue != nullptr,  p.symbol->place};
         i.open = i.type.array < 0 || p.symbol->open;
-        i.handle = p.symbol->handle;
+        i.handle = p.symbol->type.base == Base::Shader;
         if (i.type.array < 0)
             i.type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
                            : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList

@@ -22,28 +22,36 @@ std::string unknownFunctionHint(const std::string& name, const std::vector<std::
 std::vector<Checker::ParameterView> Checker::views(const Signature& s, const Shadeop& op) {
     std::vector<ParameterView> v;
     for (const auto& p : s.parameters) {
-        const bool handle = p.name == "handle" && s.text.find("shader handle") != std::string::npos &&
-                            s.text.find("(string handle") == std::string::npos;
-        const bool either =
-            p.output || p.type.base == Base::Void || p.type.array != 0 || op.section == "Arrays" || op.name == "isoutput";
-        v.push_back({p.type, p.output, either ? Handle::Either : handle ? Handle::Shader : Handle::Text});
+        const bool any = p.output || p.type.array != 0 || op.section == "Arrays" || op.name == "isoutput";
+        v.push_back({p.type, p.output, any && isStringLike(p.type.base)});
     }
     return v;
 }
 
 std::vector<Checker::ParameterView> Checker::views(const Function& f) {
     std::vector<ParameterView> v;
-    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, p->handle ? Handle::Shader : Handle::Text, p->whole});
+    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, false, p->whole});
     return v;
+}
+
+/// The type that the argument is wanted as: of two that the parameter takes that which it has.
+Type Checker::wantedType(const ParameterView& p, const Expr& argument) const {
+    if (!p.anyText) return p.type;
+    const Base other = p.type.base == Base::String ? Base::Shader : Base::String;
+    const auto isOther = [&](const Info& i) {
+        return i.array.array ? i.array.base == other : i.cost[int(other)] < i.cost[int(p.type.base)];
+    };
+    const Info& info = infos_.at(&argument);
+    const bool list = info.listLength > 0 && argument.kind == ExprKind::ArrayList;
+    return {isOther(list ? infos_.at(argument.args[0].get()) : info) ? other : p.type.base, p.type.array};
 }
 
 /// What it costs to give this argument to a parameter of that type; kNever if it cannot be.
 int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool ignoreOutputs) {
     const Info& info = infos_.at(&argument);
-    const Type wanted = parameter.type;
-    const bool output = parameter.output;
     if (info.any) return 0;
-    if (wanted.base == Base::String && !alike(info.handle, parameter.handle)) return kNever;
+    const Type wanted = wantedType(parameter, argument);
+    const bool output = parameter.output;
     if (output && !isVariable(argument) && !ignoreOutputs) return kNever;
     if (wanted.base == Base::Void) return info.listLength >= 0 ? kNever : 0; // any value
     if (wanted.array != 0) {
@@ -72,7 +80,7 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
 bool Checker::isText(const Expr& e) const {
     if (e.kind == ExprKind::String) return true;
     const Info& text = infos_.at(&e);
-    return text.cost[int(Base::String)] == 0 && text.handle != Handle::Shader && cheapest(text) == Base::String;
+    return text.cost[int(Base::String)] == 0 && cheapest(text) == Base::String;
 }
 
 bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, bool pairs, Expr& call, Choice& choice,
@@ -212,12 +220,10 @@ void Checker::unknownFunction(const Expr& e) {
 void Checker::inferResults(const Expr& e, Info& info) {
     for (Choice& c : info.choices)
         if (c.shadeop && c.result.array == 0 && std::ranges::count(c.shadeop->lastResort, c.result.base)) c.cost += kLastResort;
-    for (const Choice& c : info.choices)
-        if (c.result.base == Base::String) {
-            const bool fromArray = c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty();
-            const bool handle = c.function ? c.function->handle : c.signature->text.compare(0, 6, "shader") == 0;
-            info.handle = fromArray ? infos_.at(e.args[0].get()).handle : handle ? Handle::Shader : Handle::Text;
-        }
+    for (Choice& c : info.choices) // pop() of an array of handles
+        if (c.result.base == Base::String && c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty() &&
+            infos_.at(e.args[0].get()).array.base == Base::Shader)
+            c.result.base = Base::Shader;
     for (const Choice& c : info.choices) {
         if (c.result.array != 0) {
             info.array = c.result;
@@ -341,7 +347,7 @@ void Checker::resolveCall(ExprPtr& pointer, Type result) {
             resolveTypes(name, {Base::String, 0});
             a = std::move(name);
         } else {
-            resolveTypes(a, p.type, p.handle);
+            resolveTypes(a, wantedType(p, *a));
             // printf("%s", h->name): what another shader gives, of whatever type it is.
             const bool element = a->kind == ExprKind::Index && a->args[0]->kind == ExprKind::Member;
             const bool member = a->kind == ExprKind::Member || a->kind == ExprKind::Method || element;

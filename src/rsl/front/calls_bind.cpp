@@ -75,10 +75,11 @@ void Checker::bindArrayChange(const Expr& e) {
         sources_.report(e.args[0]->place, msg::kFixedLength(s->name),
                         s->origin == Symbol::Origin::Local ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
                                                            : "only local arrays and parameters of functions can change theirs");
-    if (e.shadeop->name == "push" && e.args.size() == 2 && s && e.args[1]->type.base == Base::String) {
-        const Handle array = s->handle ? Handle::Shader : Handle::Text;
-        if (const Info& value = infos_.at(e.args[1].get()); !alike(array, value.handle))
-            sources_.report(e.args[1]->place, msg::kTypeMismatch(named({Base::String, 0}, array), describe(*e.args[1])));
+    if (e.shadeop->name == "push" && e.args.size() == 2 && s && isStringLike(s->type.base) &&
+        isStringLike(e.args[1]->type.base)) {
+        const Info& value = infos_.at(e.args[1].get());
+        if (value.cost[int(s->type.base)] >= kNever)
+            sources_.report(e.args[1]->place, msg::kTypeMismatch(toString(s->type.element()), describe(*e.args[1])));
     }
 }
 
@@ -181,7 +182,7 @@ void Checker::optionalArguments(Expr& e, const Shadeop& op) {
             if (p.name == o.name) given = std::move(p.value);
         if (!given) {
             given = std::make_unique<Expr>();
-            const bool text = o.type.base == Base::String; // every string's default is none
+            const bool text = isStringLike(o.type.base); // every string's default is none
             given->kind = text ? ExprKind::String : ExprKind::Number;
             if (!text) given->number = std::strtod(o.defaultText.c_str(), nullptr);
             given->type = o.type;
@@ -260,7 +261,7 @@ void Checker::resolvePairs(Expr& e, size_t positional, const Shadeop* op) {
             }
         } else if (optional->output) {
             pair.output = true;
-            const int cost = argumentCost(*value, {optional->type, true, Handle::Either}, false);
+            const int cost = argumentCost(*value, {optional->type, true, isStringLike(optional->type.base)}, false);
             const bool array = info.array.array && info.array.base == optional->type.base;
             if (cost >= kNever && !array) {
                 sources_.report(value->place, msg::kOutputPair(pair.name, toString(optional->type)));

@@ -17,10 +17,10 @@ void Checker::whole(ExprPtr& e) {
     infos_.clear();
 }
 
-void Checker::valueOf(ExprPtr& e, Type t, bool handle) {
+void Checker::valueOf(ExprPtr& e, Type t) {
     infos_.clear();
     infer(*e);
-    resolveTypes(e, t, handle ? Handle::Shader : Handle::Text);
+    resolveTypes(e, t);
     infos_.clear();
 }
 
@@ -94,7 +94,7 @@ bool sameForAll(const Expr& e, Known& known) {
 } // namespace
 
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
-    if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
+    if (s.storage != Storage::Uniform || !value.varying || isStringLike(s.type.base)) return;
     const Expr& whole = value.kind == ExprKind::Index ? *value.args[0] : value;
     if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method)
         return; // what a handle gives is of the class that is wanted
@@ -121,7 +121,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
     const bool scalar = s.type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
     if (scalar) {
         // float a[42] = 0: {0, ...}.
-        resolveTypes(value, s.type.element(), s.handle ? Handle::Shader : Handle::Text);
+        resolveTypes(value, s.type.element());
         auto list = std::make_unique<Expr>();
         list->kind = ExprKind::ArrayList;
         list->place = value->place;
@@ -132,7 +132,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
         list->args.push_back(std::move(value));
         value = std::move(list);
     } else {
-        resolveTypes(value, s.type, s.handle ? Handle::Shader : Handle::Text);
+        resolveTypes(value, s.type);
     }
     infos_.clear();
     if (sources_.errors() == errors) assignedToUniform(s, *value);
@@ -172,7 +172,7 @@ void Checker::checkLoopBody(Stmt& s) {
 
 void Checker::checkReturn(Stmt& s) {
     if (function_ && function_->result.base != Base::Void) {
-        if (s.value) valueOf(s.value, function_->result, function_->handle);
+        if (s.value) valueOf(s.value, function_->result);
         else sources_.report(s.place, msg::kReturnEmpty(function_->name, toString(function_->result)));
         return;
     }

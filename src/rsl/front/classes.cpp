@@ -201,9 +201,9 @@ private:
                 return make(StmtKind::Block, f.place);
             }
             if (!optional(i) && !irradiance && locals->declarators.empty())
-                sources_.report(p.place, msg::kNoDefault(p.name, p.type.base != Base::String ? "zero"
-                                                                 : p.handle                  ? "null"
-                                                                                             : "empty"));
+                sources_.report(p.place, msg::kNoDefault(p.name, !isStringLike(p.type.base)    ? "zero"
+                                                                 : p.type.base == Base::Shader ? "null"
+                                                                                               : "empty"));
             auto symbol = std::make_unique<Symbol>(p);
             symbol->name = "(" + name + ")->" + p.name;
             symbol->origin = Symbol::Origin::Local;

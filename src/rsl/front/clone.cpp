@@ -60,7 +60,6 @@ struct Cloner {
         auto c = std::make_unique<Function>();
         c->name = f.name;
         c->result = f.result;
-        c->handle = f.handle;
         c->anywhere = f.anywhere;
         c->place = f.place;
         for (const auto& s : f.symbols) {

@@ -116,7 +116,7 @@ private:
             !told_.insert(s).second)
             return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
-        const char* value = s->type.base != Base::String ? "zero" : s->handle ? "null" : "empty";
+        const char* value = !isStringLike(s->type.base) ? "zero" : s->type.base == Base::Shader ? "null" : "empty";
         sources_.report(e.place, maybe ? msg::kMaybeUninitialised(s->name, value) : msg::kUninitialised(s->name, value));
     }
 
@@ -233,7 +233,7 @@ private:
 
     void uniformHazard(const Expr& target, const Symbol* u) {
         if (!u || varyingConditions_ <= declaredUnder(u) || u->storage != Storage::Uniform ||
-            u->origin != Symbol::Origin::Local || u->type.base == Base::String)
+            u->origin != Symbol::Origin::Local || isStringLike(u->type.base))
             return;
         sources_.report(target.place, msg::kUniformInVarying(u->name));
     }

@@ -15,7 +15,7 @@ void Parser::extends(StructType& type) {
     take();
     type.base = base->second;
     for (const StructMember& m : unit_.structs[size_t(type.base)].members) {
-        type.members.push_back({m.name, m.type, m.handle, m.storage, m.init ? clone(*m.init) : nullptr, m.place});
+        type.members.push_back({m.name, m.type, m.storage, m.init ? clone(*m.init) : nullptr, m.place});
     }
 }
 
@@ -42,7 +42,6 @@ void Parser::structureMember(StructType& type, std::vector<size_t>& methods) {
     if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier) fail(peek().place, msg::kStructRecursive);
     if (!atTypeName()) failHere(msg::kExpectedMemberType(shown()));
     const Base base = takeBase();
-    const bool handle = handle_;
     if (call(0)) return skipMethod(begin, methods);
     if (at("[") && peek(1).is("]") && call(2)) {
         take(), take();
@@ -57,7 +56,6 @@ void Parser::structureMember(StructType& type, std::vector<size_t>& methods) {
         m.place = peek().place;
         m.name = std::string(take().text);
         m.type = dimensions(group);
-        m.handle = handle;
         m.storage = s.storage;
         if (accept("=")) m.init = inSpace(at("{") ? arrayList() : assignment(), base, space.get());
         for (const StructMember& other : type.members)
@@ -92,15 +90,14 @@ void Parser::structureMethods(size_t index, const std::vector<size_t>& methods) 
     for (const size_t begin : methods) {
         at_ = begin;
         try {
-            const Specifiers s = specifiers();
+            specifiers();
             const bool typed = !(peek().kind == Tok::Identifier && peek(1).is("("));
             Type result{};
-            handle_ = false;
             if (typed) {
                 result.base = takeBase();
                 result = dimensions(result);
             }
-            if (auto f = function(ofType(s), result, typed)) unit_.structs[index].methods.push_back(std::move(f));
+            if (auto f = function(result, typed)) unit_.structs[index].methods.push_back(std::move(f));
         } catch (const SyntaxError&) {
             if (tooDeep_) throw;
         }
@@ -187,7 +184,7 @@ void Parser::shaderObject() {
                 // A method without a type: void, or what it returns.
                 accept("public");
                 member = make(StmtKind::Declare, peek().place);
-                auto f = function({}, {}, false);
+                auto f = function({}, false);
                 if (!f) continue;
                 member->definition = f.get();
                 s.nested.push_back(std::move(f));

@@ -173,12 +173,11 @@ StmtPtr Parser::declaration(bool member) {
     Specifiers spec = specifiers();
     if (!atTypeName()) failHere(msg::kExpectedType(shown()));
     Type type{takeBase(), 0};
-    spec.handle = handle_;
     const ExprPtr space = declaredSpace(type.base);
     ExprPtr shared;
     type = dimensions(type, member ? nullptr : &shared);
     if (functionFollows() || (type.base == Base::Void && peek(1).is("("))) {
-        auto f = function(spec, type, true);
+        auto f = function(type, true);
         if (!f) return nullptr;
         s->definition = f.get();
         owner_.nested->push_back(std::move(f));

@@ -7,8 +7,8 @@
 namespace alpenglow::rsl::front {
 
 namespace {
-constexpr Base kAllBases[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
-                              Base::Normal, Base::Matrix, Base::String, Base::Bool};
+constexpr Base kAllBases[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector, Base::Normal,
+                              Base::Matrix, Base::String, Base::Shader, Base::Bool};
 } // namespace
 
 /// Type and children are known: `varying` follows from the children.
@@ -30,16 +30,16 @@ void Checker::convert(ExprPtr& e, Type to) {
     e = std::move(c);
 }
 
-void Checker::resolveTypes(ExprPtr& e, Type want, Handle handle) {
+void Checker::resolveTypes(ExprPtr& e, Type want) {
     const Info& info = infos_.at(e.get());
     if (info.any || want.base == Base::Void) {
         resolveCheapest(e);
         if (want.base != Base::Void) e->type = want;
         return;
     }
-    if (want.array != 0) return resolveArray(e, want, handle);
+    if (want.array != 0) return resolveArray(e, want);
     if (info.array.array || info.listLength >= 0) {
-        sources_.report(e->place, msg::kTypeMismatch(named(want, handle), describe(*e)));
+        sources_.report(e->place, msg::kTypeMismatch(toString(want), describe(*e)));
         e->type = want;
         return;
     }
@@ -52,10 +52,10 @@ void Checker::resolveTypes(ExprPtr& e, Type want, Handle handle) {
             best = b;
         }
     }
-    if (best == Base::Void || (want.base == Base::String && !alike(info.handle, handle))) {
+    if (best == Base::Void) {
         std::string hint;
         if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple()) hint = componentHint(cheapest(info));
-        sources_.report(e->place, msg::kTypeMismatch(named(want, handle), describe(*e)), hint);
+        sources_.report(e->place, msg::kTypeMismatch(toString(want), describe(*e)), hint);
         e->type = want;
         return;
     }
@@ -149,7 +149,7 @@ void Checker::resolveCondition(ExprPtr& e) {
     e = std::move(test);
 }
 
-void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
+void Checker::resolveArray(ExprPtr& e, Type want) {
     const Info& info = infos_.at(e.get());
     if (info.any) {
         e->type = want;
@@ -161,7 +161,7 @@ void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
             sources_.report(e->args[size_t(length)]->place, msg::kTooManyElements(e->args.size(), length));
             e->args.resize(size_t(length));
         }
-        for (auto& a : e->args) resolveTypes(a, want.element(), handle);
+        for (auto& a : e->args) resolveTypes(a, want.element());
         // Elements that are not given are the last one again after "...", else zero: the list stays as short as it was written.
         for (const auto& a : e->args) e->height = std::max(e->height, a->height + 1);
         e->type = {want.base, length};
@@ -174,9 +174,8 @@ void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
         return;
     }
     const Type have = info.array;
-    const bool mixed = want.base == Base::String && !alike(info.handle, handle);
-    if (have.base != want.base || mixed || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
-        sources_.report(e->place, msg::kTypeMismatchArray(named(want, handle), describe(*e)));
+    if (have.base != want.base || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
+        sources_.report(e->place, msg::kTypeMismatchArray(toString(want), describe(*e)));
         e->type = want;
         return;
     }
@@ -211,7 +210,7 @@ void Checker::resolveVariable(ExprPtr& e) {
 
 /// A member or a method of another shader. Its arguments stay as they are: what it takes is known when that is bound.
 void Checker::resolveHandle(ExprPtr& e, Base t) {
-    resolveTypes(e->args[0], {Base::String, 0}, Handle::Shader);
+    resolveTypes(e->args[0], {Base::Shader, 0});
     for (size_t i = 1; i < e->args.size(); ++i) {
         if (isVariable(*e->args[i])) resolveVariable(e->args[i]);
         else resolveCheapest(e->args[i]);
@@ -267,8 +266,8 @@ void Checker::resolveParts(ExprPtr& e, Base t) {
         resolveCondition(e->args[0]);
         // Truth values are no values: 0 and 1 where they meet as results.
         if (t == Base::Bool) t = Base::Float;
-        resolveTypes(e->args[1], {t, 0}, Handle::Either);
-        resolveTypes(e->args[2], {t, 0}, Handle::Either);
+        resolveTypes(e->args[1], {t, 0});
+        resolveTypes(e->args[2], {t, 0});
         break;
     default: // tuples
         for (auto& a : e->args) resolveTypes(a, {Base::Float, 0});
@@ -397,7 +396,7 @@ void Checker::resolveAssign(ExprPtr& e) {
         e->op = ExprOp::Assign;
         e->text = "+=";
     } else if (e->op == ExprOp::Assign || target.array != 0) {
-        resolveTypes(e->args[1], target, Handle::Either); // infer compared them
+        resolveTypes(e->args[1], target);
     } else {
         const Info& l = infos_.at(e->args[0].get());
         const Info& r = infos_.at(e->args[1].get());

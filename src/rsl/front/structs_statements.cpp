@@ -161,7 +161,6 @@ void Lowering::function(Function& f) {
     if (isStruct(f.result)) {
         for (const Leaf& l : leaves(f.result)) {
             Symbol* r = newSymbol("(result)" + l.path, l.type, l.storage, f.place);
-            r->handle = l.member->handle;
             r->origin = Symbol::Origin::FunctionParameter;
             r->output = true;
             results_.push_back(r);

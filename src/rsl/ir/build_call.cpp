@@ -220,7 +220,7 @@ Inst* Builder::random(const Expr& e) {
     const Kind k = kindOf(e.signature ? e.signature->result : e.type);
     s.resultKinds = {k};
     s.resultNames = {""};
-    s.resultType = e.type;
+    s.resultType = storedType(e.type);
     s.shadeop = e.shadeop;
     return call(Op::Service, std::move(s), {})[0];
 }
@@ -274,7 +274,7 @@ Inst* Builder::isOutput(const Expr& e) {
         Inst* at = expr(*a.args[1], Kind::Float);
         name = a.args[0]->symbol->name + (isConst(at) ? "[" + indexText(at->numbers[0]) + "]" : "");
     }
-    Inst* const text = name.empty() && a.type == Type{Base::String, 0} ? expr(a) : nullptr;
+    Inst* const text = name.empty() && storedType(a.type) == Type{Base::String, 0} ? expr(a) : nullptr;
     if (text && text->op != Op::ConstString) { // one of those that are asked for
         std::set<std::string> all;
         for (const std::string& o : options_.outputs) all.insert({o, o.substr(0, o.find('['))});

@@ -90,7 +90,7 @@ void Builder::send(Site& site, std::vector<Inst*>& args, const Pair& p) {
         report(p.place, msg::kGatherSend(p.name));
         return;
     }
-    const bool handle = p.value->handle || (p.value->symbol && p.value->symbol->handle);
+    const bool handle = type.base == Base::Shader;
     if (handle || (pair.to == PairName::To::Light && type.base == Base::String)) {
         report(p.place, handle ? msg::kGatherSendShader(p.name) : msg::kGatherSendString(p.name));
         return;

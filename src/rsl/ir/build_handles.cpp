@@ -126,9 +126,9 @@ void Builder::beginInstance(size_t i) {
             // it takes an output of another
         } else if (std::find(c.computed.begin(), c.computed.end(), s.name) != c.computed.end()) {
             v = defaultValue(p, std::max(1, s.type.array));
-        } else if (s.type.base == Base::String && !s.type.array) {
+        } else if (isStringLike(s.type.base) && !s.type.array) {
             v = leaves_.string(c.strings.count(s.name) ? c.strings.at(s.name) : "");
-        } else if (s.type.base == Base::String) {
+        } else if (isStringLike(s.type.base)) {
             const std::vector<std::pair<std::string, std::string>> given(c.strings.begin(), c.strings.end());
             int n = 0;
             while (c.strings.count(s.name + "[" + std::to_string(n) + "]")) ++n;

@@ -55,7 +55,7 @@ void Builder::Illuminance::send(const Pair& p, const PairName& pair) {
         else give(p.name, v, type);
         return;
     }
-    if (type.base == Base::String) {
+    if (isStringLike(type.base)) {
         b.report(p.place, msg::kLightPairStrings(p.name));
         return;
     }

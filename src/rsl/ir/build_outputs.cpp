@@ -7,7 +7,7 @@ namespace alpenglow::rsl::ir {
 
 void Builder::putOut(const std::string& name, Inst* value, Type type) {
     const auto one = [&](const std::string& slot, Inst* v, Type t) {
-        k_.outputs.push_back({slot, v->kind, t});
+        k_.outputs.push_back({slot, v->kind, storedType(t)});
         emit(Op::Output, Kind::None, {v}, static_cast<int>(k_.outputs.size()) - 1);
     };
     if (value->kind != Kind::Array) return one(name, value, type);

@@ -69,7 +69,7 @@ void Builder::ServiceCall::result(Kind k, const std::string& name) {
 void Builder::ServiceCall::begin() {
     site.op = op.name;
     site.shadeop = &op;
-    site.resultType = parted ? e.type.element() : e.type;
+    site.resultType = storedType(parted ? e.type.element() : e.type);
     site.pure = op.pure && kind == Op::Service;
     if (whole != Kind::None) result(whole, "");
 }

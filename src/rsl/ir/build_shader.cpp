@@ -12,7 +12,7 @@ namespace alpenglow::rsl::ir {
 
 /// Value text of KernelOptions::stringParameters for a numeric parameter: one number, or three.
 Inst* Builder::constantParameter(const Symbol& s, const std::string& text) {
-    if (s.type.base == Base::String) return leaves_.string(text);
+    if (isStringLike(s.type.base)) return leaves_.string(text);
     std::vector<float> numbers;
     const char* p = text.c_str();
     for (char* end = nullptr;; p = end) {
@@ -102,7 +102,7 @@ Inst* Builder::ownValue(const ShaderParameter& p) {
     if (type.array) type.array = std::max(1, length); // storage
     if (Inst* v = connectedParameter(s)) return v;
     if (const auto& over = options_.varyingParameters;
-        type == Type{Base::String, 0} && std::find(over.begin(), over.end(), s.name) != over.end()) {
+        storedType(type) == Type{Base::String, 0} && std::find(over.begin(), over.end(), s.name) != over.end()) {
         // The primitive has a variable of this name, which counts more.
         Site site;
         site.op = "getvar";
@@ -113,7 +113,7 @@ Inst* Builder::ownValue(const ShaderParameter& p) {
         site.strings = {s.name};
         return call(Op::Service, std::move(site), {})[1];
     }
-    if (type.array > 0 && type.base == Base::String) {
+    if (type.array > 0 && isStringLike(type.base)) {
         if (Inst* a = constantTexts(s.name, type.array, options_.stringParameters)) {
             noteTexts(a, s, length, options_.stringParameters);
             return a;
@@ -123,7 +123,7 @@ Inst* Builder::ownValue(const ShaderParameter& p) {
             if (name == s.name)
                 if (Inst* c = constantParameter(s, value)) return c;
     }
-    if (type == Type{Base::String, 0} && (!p.defaultValue || p.defaultValue->kind == ExprKind::String))
+    if (storedType(type) == Type{Base::String, 0} && (!p.defaultValue || p.defaultValue->kind == ExprKind::String))
         return leaves_.string(p.defaultValue ? p.defaultValue->text : "");
     const auto& computed = options_.computedParameters;
     if (std::find(computed.begin(), computed.end(), s.name) != computed.end()) return defaultValue(p, length);
@@ -181,8 +181,8 @@ bool Builder::buildDefaults(const std::vector<ParameterValue>& given) {
         const int n = v->kind == Kind::Array ? arrayLength(v) : 1;
         for (int e = 0; e < n; ++e) {
             Inst* value = v->kind == Kind::Array ? emit(Op::ArrayLoad, v->element, {v, constant(static_cast<float>(e))}) : v;
-            k_.outputs.push_back(
-                {OutputName::parameterOf(s->name, v->kind == Kind::Array ? e : -1).text(), value->kind, s->type.element()});
+            k_.outputs.push_back({OutputName::parameterOf(s->name, v->kind == Kind::Array ? e : -1).text(), value->kind,
+                                  storedType(s->type.element())});
             emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
         }
     }
@@ -225,7 +225,7 @@ void Builder::bindParameters(const std::set<int>& assigned) {
         const int n = slot(p.symbol);
         Inst* v = parameterValue(p);
         value(n) = v->op == Op::ArrayInput && assigned.count(n) ? copyOfInput(v, s.type.base) : v;
-        if (s.output && !s.type.array && s.type.base != Base::String &&
+        if (s.output && !s.type.array && !isStringLike(s.type.base) &&
             std::find(asked.begin(), asked.end(), s.name) != asked.end())
             messageSlots_[s.name] = {n, s.type};
     }

@@ -20,7 +20,7 @@ Inst* Builder::alive() {
 static bool plainDeclarations(const std::vector<StmtPtr>& list, size_t from) {
     return std::all_of(list.begin() + static_cast<ptrdiff_t>(from), list.end(), [](const StmtPtr& s) {
         return !s->definition && std::all_of(s->declarators.begin(), s->declarators.end(), [](const Stmt::Declarator& d) {
-            return d.symbol->type.array == 0 && d.symbol->type.base != Base::String && d.symbol->storage != Storage::Uniform;
+            return d.symbol->type.array == 0 && !isStringLike(d.symbol->type.base) && d.symbol->storage != Storage::Uniform;
         });
     });
 }

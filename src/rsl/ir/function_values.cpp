@@ -19,6 +19,7 @@ Kind kindOf(Type t) {
     case Base::Matrix:
         return Kind::Matrix;
     case Base::String:
+    case Base::Shader:
         return Kind::String;
     default:
         return Kind::Triple;
@@ -61,7 +62,7 @@ Inst* FunctionBuilder::input(const std::string& name, Type type, bool uniform) {
     if (!i) {
         Input in;
         in.name = name;
-        in.type = type;
+        in.type = storedType(type);
         in.kind = kindOf(type.element());
         in.array = type.array;
         in.constant = uniform;
@@ -207,7 +208,7 @@ Inst* FunctionBuilder::newArray(Base base, int length) {
 void FunctionBuilder::addArgument(Site& s, std::vector<Inst*>& args, Inst* v, Type t) {
     args.push_back(v);
     s.argKinds.push_back(v->kind);
-    s.argTypes.push_back(t);
+    s.argTypes.push_back(storedType(t));
 }
 
 void FunctionBuilder::addPair(Site& s, const std::string& name, const std::string& text) {

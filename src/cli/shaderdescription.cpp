@@ -70,7 +70,7 @@ std::set<std::string> computedDefaults(const rsl::CompiledShader& s) {
     Diagnostics quiet; // parameterValues() says what there is to say
     const auto k = rsl::buildDefaults(s.program(), s.shader(), quiet);
     if (!k) return names;
-    rsl::ir::optimize(*k, {}, quiet);
+    rsl::passes::optimize(*k, {}, quiet);
     for (const rsl::ir::Inst* i : k->body.body) {
         if (i->op != rsl::ir::Op::Output || i->index < 0 || size_t(i->index) >= k->outputs.size() || known(i->args[0])) continue;
         names.insert(rsl::OutputName::parse(k->outputs[size_t(i->index)].name).name);

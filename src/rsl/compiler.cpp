@@ -181,7 +181,7 @@ ShaderPtr ShaderCompiler::loadText(const std::string& text, const std::string& n
 
 std::unique_ptr<ir::Kernel> ShaderCompiler::analyse(const CompiledShader& s, const KernelOptions& o, Diagnostics& d) const {
     auto k = buildKernel(s.program(), s.shader(), o, d);
-    if (k) ir::optimize(*k, o, d);
+    if (k) passes::optimize(*k, o, d);
     return k;
 }
 
@@ -263,7 +263,7 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
             file.messages = local.all();
             for (const auto& m : file.messages) diagnostics.reportOnce(toString(m), m);
             error.clear();
-            if (k) ir::limitLoops(*k);
+            if (k) passes::limitLoops(*k);
             if (k && local.errors() == 0 && jit::generate(*k, options, file, error)) {
                 result = jit::load(file, false, error, state_->outside);
                 if (result) state_->cache->store(key, file);

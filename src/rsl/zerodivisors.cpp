@@ -56,8 +56,8 @@ std::vector<SourcePlace> divisionsByZero(const Program& program, const Shader& s
     std::vector<SourcePlace> places;
     const auto kernel = buildKernel(program, shader, options, quiet);
     if (!kernel) return places;
-    ir::simplify(*kernel, options);
-    ir::warnOfZeroDivisions(*kernel, said);
+    passes::simplify(*kernel, options);
+    passes::warnOfZeroDivisions(*kernel, said);
     for (const Diagnostic& d : said.all()) places.push_back(d.place);
     return places;
 }

@@ -60,7 +60,7 @@ std::unique_ptr<ir::Kernel> kernelOf(const std::string& text, const KernelOption
     Diagnostics d;
     auto p = compileText(text, "t.sl", {}, d);
     auto k = p ? buildKernel(*p, *p->shaders.back(), options, d) : nullptr;
-    if (k) ir::optimize(*k, options, d);
+    if (k) passes::optimize(*k, options, d);
     EXPECT_TRUE(k) << all(d);
     return k;
 }

@@ -54,9 +54,9 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
         auto trial = buildOnce(p, s, o, silent, direct);
         KernelOptions probe = o;
         probe.suspend = false;
-        optimize(*trial, probe, silent);
+        passes::optimize(*trial, probe, silent);
         const size_t before = direct.size();
-        for (const auto& [site, why] : nonAffineSites(*trial)) {
+        for (const auto& [site, why] : passes::nonAffineSites(*trial)) {
             const Site& at = trial->sites[static_cast<size_t>(site)];
             if (kNoLobes.count(at.op)) continue;
             if (direct.emplace(at.place.file, at.place.line, at.place.column).second) {
@@ -75,7 +75,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
 std::vector<OutputLight> lightOfOutputs(const Program& p, const Shader& s, const KernelOptions& o) {
     Diagnostics quiet; // the messages come when the kernel is made
     const auto k = buildOnce(p, s, o, quiet, {});
-    return k ? lightOfOutputs(*k, o) : std::vector<OutputLight>();
+    return k ? passes::lightOfOutputs(*k, o) : std::vector<OutputLight>();
 }
 
 std::unique_ptr<Kernel> buildDefaults(const Program& p, const Shader& s, Diagnostics& d,

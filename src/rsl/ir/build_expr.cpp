@@ -59,7 +59,7 @@ Inst* Builder::binary(const Expr& e, Inst* a, Inst* b) {
         return k == Kind::Matrix ? multiply(a, b) : emit(Op::Mul, k, {a, b});
     case ExprOp::Div:
         return k == Kind::Matrix ? multiply(a, runtime1("al_inverse", {b}, Kind::Matrix))
-                                 : emit(Op::Div, k, {a, b}, ownText_ ? 0 : kWrittenDivision);
+                                 : emit(Op::Div, k, {a, b}, ownText_ ? 0 : passes::kWrittenDivision);
     case ExprOp::Dot:
         return dot(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
     case ExprOp::Cross:

@@ -50,7 +50,7 @@ Inst* FunctionBuilder::emit(Op op, Kind kind, std::vector<Inst*> args, int index
     Inst* i = k_.make(op, kind, std::move(args));
     i->index = index;
     i->place = keptPlace(place_);
-    if (Inst* simple = simplify(k_, leaves_, i)) return simple;
+    if (Inst* simple = passes::simplify(k_, leaves_, i)) return simple;
     region_->body.push_back(i);
     return i;
 }
@@ -82,7 +82,7 @@ std::vector<Inst*> FunctionBuilder::runtime(const std::string& symbol, std::vect
     i->results = results;
     i->place = keptPlace(place_);
     if (results.size() == 1)
-        if (Inst* simple = simplify(k_, leaves_, i)) return {simple};
+        if (Inst* simple = passes::simplify(k_, leaves_, i)) return {simple};
     region_->body.push_back(i);
     std::vector<Inst*> out;
     for (size_t r = 0; r < results.size(); ++r) out.push_back(emit(Op::Result, results[r], {i}, static_cast<int>(r)));

@@ -122,7 +122,7 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
     bool handle = false;
     const auto look = [&](const std::vector<std::unique_ptr<rsl::Symbol>>& symbols) {
         for (const auto& s : symbols) {
-            handle |= s->handle && s->name == r.name;
+            handle |= s->type.base == rsl::Base::Shader && s->name == r.name;
             if (s->name.compare(0, head.size(), head) != 0) continue;
             const std::string rest = s->name.substr(head.size());
             const size_t deeper = rest.find("->");

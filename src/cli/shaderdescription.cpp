@@ -26,9 +26,8 @@ std::string storageText(rsl::Storage s) { return s == rsl::Storage::Varying ? "v
 /// The type as the shader writes it: handles are of type shader, arrays of open length have none.
 std::string typeText(rsl::Type t, const rsl::Symbol* s) {
     if (s && (s->type.array < 0 || s->open || s->resizable)) t.array = -1;
-    std::string text = rsl::toString(t);
-    if (s && s->handle && text.rfind("string", 0) == 0) text.replace(0, 6, "shader");
-    return text;
+    if (s && s->type.base == rsl::Base::Shader) t.base = rsl::Base::Shader; // parameters have the types that scenes give
+    return rsl::toString(t);
 }
 
 /// Does the value depend on nothing but numbers and texts in the shader?
@@ -71,7 +70,7 @@ std::set<std::string> computedDefaults(const rsl::CompiledShader& s) {
     Diagnostics quiet; // parameterValues() says what there is to say
     const auto k = rsl::buildDefaults(s.program(), s.shader(), quiet);
     if (!k) return names;
-    rsl::ir::optimize(*k, {}, quiet);
+    rsl::passes::optimize(*k, {}, quiet);
     for (const rsl::ir::Inst* i : k->body.body) {
         if (i->op != rsl::ir::Op::Output || i->index < 0 || size_t(i->index) >= k->outputs.size() || known(i->args[0])) continue;
         names.insert(rsl::OutputName::parse(k->outputs[size_t(i->index)].name).name);
@@ -141,7 +140,7 @@ DefaultDescription describeDefault(const rsl::ShaderParameter& p, const rsl::Par
     d.value = std::move(value);
     d.computed = computed;
     const rsl::Expr* e = p.defaultValue.get();
-    d.null = p.symbol->handle && p.symbol->type.array == 0 && d.value.strings == std::vector<std::string>{""};
+    d.null = p.symbol->type == rsl::Type{rsl::Base::Shader, 0} && d.value.strings == std::vector<std::string>{""};
     d.named = e && !d.written.empty() && asks(*e);
     if (e && e->kind == rsl::ExprKind::ArrayList && e->text == "{}")
         d.value.strings.clear(), d.value.numbers.clear(); // {} has no elements

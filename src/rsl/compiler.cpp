@@ -80,10 +80,10 @@ ShaderPtr ShaderCompiler::describe(std::shared_ptr<const Program> program, const
     c->source_ = source;
     c->digest_ = jit::sha256(source + '\3' + shader.name + '\1' + toString(shader.kind));
     for (const ShaderParameter& p : c->shader_->parameters) {
-        ParameterInfo i{p.symbol->name, p.symbol->type, p.symbol->storage, p.symbol->output, p.defaultValue != nullptr,
-                        p.symbol->place};
+        ParameterInfo i{p.symbol->name,   storedType(p.symbol->type), p.symbol->storage,
+                        p.symbol->output, p.defaultValue != nullptr,  p.symbol->place};
         i.open = i.type.array < 0 || p.symbol->open;
-        i.handle = p.symbol->handle;
+        i.handle = p.symbol->type.base == Base::Shader;
         if (i.type.array < 0)
             i.type.array = p.defaultValue && p.defaultValue->type.array > 0 ? p.defaultValue->type.array
                            : p.defaultValue && p.defaultValue->kind == ExprKind::ArrayList
@@ -181,7 +181,7 @@ ShaderPtr ShaderCompiler::loadText(const std::string& text, const std::string& n
 
 std::unique_ptr<ir::Kernel> ShaderCompiler::analyse(const CompiledShader& s, const KernelOptions& o, Diagnostics& d) const {
     auto k = buildKernel(s.program(), s.shader(), o, d);
-    if (k) ir::optimize(*k, o, d);
+    if (k) passes::optimize(*k, o, d);
     return k;
 }
 
@@ -263,7 +263,7 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
             file.messages = local.all();
             for (const auto& m : file.messages) diagnostics.reportOnce(toString(m), m);
             error.clear();
-            if (k) ir::limitLoops(*k);
+            if (k) passes::limitLoops(*k);
             if (k && local.errors() == 0 && jit::generate(*k, options, file, error)) {
                 result = jit::load(file, false, error, state_->outside);
                 if (result) state_->cache->store(key, file);

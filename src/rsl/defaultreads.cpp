@@ -24,8 +24,7 @@ DefaultReads readsOfDefault(const Expr* e) {
         found.object |= x.space && isObject(*x.space);
         if (x.shadeop && x.shadeop->name.ends_with("transform"))
             for (const ExprPtr& a : x.args) found.object |= a && isObject(*a);
-        if (x.function && x.function->body && seen.insert(x.function).second)
-            front::everyStmt(*x.function->body, [](const Stmt&) {}, look);
+        if (x.function && x.function->body && seen.insert(x.function).second) front::everyExpr(*x.function->body, look);
     };
     if (e) front::everyExpr(*e, look);
     return found;

@@ -136,7 +136,7 @@ bool movesPoints(const Program& program, const Shader& shader, KernelOptions opt
     Diagnostics quiet; // compiling the kernel has reported it
     const auto kernel = buildKernel(program, shader, options, quiet);
     if (!kernel) return true;
-    ir::simplify(*kernel, options);
+    passes::simplify(*kernel, options);
     Unmoved unmoved(*kernel);
     bool moves = false;
     ir::forEach(kernel->body, [&](const Inst* i) {

@@ -32,7 +32,7 @@ std::vector<Diagnostic> nonlinearUses(const Program& program, const Shader& shad
     const auto kernel = buildKernel(program, shader, options, quiet);
     std::vector<Diagnostic> all;
     if (!kernel) return all;
-    ir::optimize(*kernel, options, quiet);
+    passes::optimize(*kernel, options, quiet);
     if (kernel->facts.affine) return all;
     // A lobe that had to be written out as a loop over the lights is named, not what is found inside the loop.
     const size_t lobes = kernel->facts.direct.size();

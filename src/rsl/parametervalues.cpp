@@ -94,7 +94,7 @@ std::shared_ptr<const CompiledKernel> codeOfDefaults(ir::Kernel& k, const Kernel
                                                      const std::function<void*(const std::string&)>& outside,
                                                      std::string& error) {
     std::shared_ptr<const CompiledKernel> code;
-    ir::limitLoops(k);
+    passes::limitLoops(k);
     if (auto cached = cache.load(key)) code = jit::load(*cached, true, error, outside);
     jit::KernelFile file;
     if (!code && jit::generate(k, options, file, error)) {
@@ -163,7 +163,7 @@ std::vector<ParameterValue> ShaderCompiler::parameterValues(const std::shared_pt
     KernelOptions options;
     options.vectors = 1;
     const int errors = diagnostics.errors();
-    ir::optimize(*k, options, diagnostics);
+    passes::optimize(*k, options, diagnostics);
     if (diagnostics.errors() > errors) return values;
     // Mostly everything is constant by now, and no code is needed.
     auto numbers = constantOutputs(*k);

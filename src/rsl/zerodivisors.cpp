@@ -33,11 +33,9 @@ std::vector<std::string> zeroDivisors(const Program& program, const Shader& shad
     const auto expression = [&](const Expr& e) {
         if (e.op == ExprOp::Div && e.args.size() == 2) front::everyExpr(*e.args[1], divisor);
     };
-    const auto body = [&](const StmtPtr& s) {
-        if (s) front::everyStmt(*s, [](const Stmt&) {}, expression);
-    };
-    body(shader.body);
-    front::everyFunction(program, [&](const Function& f) { body(f.body); });
+    const auto body = [&](const Stmt& s) { front::everyExpr(s, expression); };
+    if (shader.body) body(*shader.body);
+    front::everyFunctionBody(program, body);
     return {found.begin(), found.end()};
 }
 
@@ -58,8 +56,8 @@ std::vector<SourcePlace> divisionsByZero(const Program& program, const Shader& s
     std::vector<SourcePlace> places;
     const auto kernel = buildKernel(program, shader, options, quiet);
     if (!kernel) return places;
-    ir::simplify(*kernel, options);
-    ir::warnOfZeroDivisions(*kernel, said);
+    passes::simplify(*kernel, options);
+    passes::warnOfZeroDivisions(*kernel, said);
     for (const Diagnostic& d : said.all()) places.push_back(d.place);
     return places;
 }

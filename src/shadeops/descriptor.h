@@ -109,7 +109,7 @@ std::span<const Shadeop> shadeops();
 const Shadeop* findShadeop(std::string_view name);
 
 /// Parses "float noise(point p; float w)", "type min(type x, y, ...)" is not accepted here: list generics one by one.
-/// "any" as a parameter's type is Base::Void: every type is accepted (printf). "shader" is Base::String: a handle is the name of
+/// "any" as a parameter's type is Base::Void: every type is accepted (printf). "shader" is Base::Shader: a handle is the name of
 /// what it stands for. Arrays: "float p[]", "float p[4]", "float[] p", result "color[]". In a parameter list "uniform" and
 /// "output" may precede a type; a final "..." sets `repeats`; a final "; pairs" sets `pairs`.
 Signature parseSignature(std::string_view text, std::string symbol = {});

@@ -34,7 +34,7 @@ bool baseOf(const std::string& word, Base& base) {
     static constexpr struct {
         const char* name;
         Base base;
-    } kNames[] = {{"void", Base::Void},     {"any", Base::Void},     {"shader", Base::String}, {"float", Base::Float},
+    } kNames[] = {{"void", Base::Void},     {"any", Base::Void},     {"shader", Base::Shader}, {"float", Base::Float},
                   {"color", Base::Color},   {"point", Base::Point},  {"vector", Base::Vector}, {"normal", Base::Normal},
                   {"matrix", Base::Matrix}, {"string", Base::String}};
     for (const auto& n : kNames)

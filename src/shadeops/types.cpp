@@ -10,6 +10,7 @@ int componentCount(Base base) {
     case Base::Bool:
     case Base::Float:
     case Base::String:
+    case Base::Shader:
         return 1;
     case Base::Color:
     case Base::Point:
@@ -23,7 +24,8 @@ int componentCount(Base base) {
 }
 
 std::string toString(Type type) {
-    static constexpr const char* kNames[] = {"void", "bool", "float", "color", "point", "vector", "normal", "matrix", "string"};
+    static constexpr const char* kNames[] = {"void",   "bool",   "float",  "color",  "point",
+                                             "vector", "normal", "matrix", "string", "shader"};
     const size_t base = static_cast<size_t>(type.base); // beyond the table: structures, numbered by the front end while it reads
     std::string text = base < std::size(kNames) ? kNames[base] : "structure";
     if (type.array > 0) text += "[" + std::to_string(type.array) + "]";

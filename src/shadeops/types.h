@@ -5,7 +5,8 @@
 
 namespace alpenglow::rsl {
 
-enum class Base : uint8_t { Void, Bool, Float, Color, Point, Vector, Normal, Matrix, String };
+/// Shader: a handle of another shader. Bases above these are structures, numbered by the front end while it reads a file.
+enum class Base : uint8_t { Void, Bool, Float, Color, Point, Vector, Normal, Matrix, String, Shader };
 
 /// Base type and array length. Bool is internal: the result of comparisons, never a variable.
 struct Type {
@@ -18,7 +19,11 @@ struct Type {
     Type element() const { return {base, 0}; }
 };
 
-/// Floats per element: float 1, tuples 3, matrix 16, string 1 (an interned id), void 0.
+/// Whether values are texts when they are stored: strings, and handles, which are the names of what they stand for.
+constexpr bool isStringLike(Base b) { return b == Base::String || b == Base::Shader; }
+/// The type as kernels and their users see it, for whom a handle is a string.
+constexpr Type storedType(Type t) { return {t.base == Base::Shader ? Base::String : t.base, t.array}; }
+/// Floats per element: float 1, tuples 3, matrix 16, string and shader 1 (an interned id), void 0.
 int componentCount(Base);
 /// "float", "color", ..., "float[4]".
 std::string toString(Type);

@@ -60,7 +60,7 @@ std::unique_ptr<ir::Kernel> kernelOf(const std::string& text, const KernelOption
     Diagnostics d;
     auto p = compileText(text, "t.sl", {}, d);
     auto k = p ? buildKernel(*p, *p->shaders.back(), options, d) : nullptr;
-    if (k) ir::optimize(*k, options, d);
+    if (k) passes::optimize(*k, options, d);
     EXPECT_TRUE(k) << all(d);
     return k;
 }
@@ -138,6 +138,28 @@ TEST(ShaderLimits, InlinedInstructions) {
     const std::string m = messages(20);
     EXPECT_TRUE(says(m, "too large") && says(m, "[shader-too-large]")) << m;
     EXPECT_TRUE(says(m, "t.sl:")) << m;
+}
+
+TEST(ShaderLimits, InlinedInstructionsOfACoShaderNameItsFile) {
+    std::string text = "class big() { public float f0(float x) { return random() + x; }\n";
+    for (int i = 1; i <= 20; ++i) {
+        const std::string g = "f" + std::to_string(i - 1);
+        text += "public float f" + std::to_string(i) + "(float x) { return " + g + "(x) + " + g + "(x + 1); }\n";
+    }
+    text += "}\n";
+    Diagnostics d;
+    const auto big = compileText(text, "big.sl", {}, d);
+    const auto p = compileText("surface s() { shader b = getshader(\"b\"); Ci = b->f20(v); }", "t.sl", {}, d);
+    ASSERT_TRUE(big && p) << all(d);
+    KernelOptions o;
+    CoShader c;
+    c.handle = "b";
+    c.program = big.get();
+    c.shader = big->shaders.back().get();
+    o.coShaders.push_back(c);
+    EXPECT_EQ(buildKernel(*p, *p->shaders.back(), o, d), nullptr);
+    const std::string m = all(d);
+    EXPECT_TRUE(says(m, "too large") && says(m, "big.sl:")) << m;
 }
 
 TEST(ShaderLimits, OutlinedFunctions) {

@@ -49,7 +49,6 @@ struct Symbol {
     bool output = false;     ///< shader: AOV; function: by reference
     bool writable = true;    ///< globals: by kind of shader
     bool isConstant = false; ///< `constant`: written where the shader begins, then never again
-    bool handle = false;     ///< of type `shader`: its value (of base String) is the name of a shader, no text
     bool open =
         false; ///< parameter of a shader, `float x[]`: as long as what the scene gives; `type` has the length of the default
     bool resizable = false; ///< `float x[]`, local or a parameter of a function: its length may change
@@ -121,7 +120,7 @@ struct Expr {
     Type type;
     bool varying = true; ///< by declaration and operands; the IR infers more
     Place place;
-    bool handle = false; ///< Cast to `shader`, and the literal null (a String): a handle, no text
+    bool handle = false; ///< String: a handle, no text: null (empty), or what RSL has names for, "(this)", "(light)"
     Whole whole{};       ///< of an argument
     int height = 1;      ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
     double number = 0;
@@ -176,7 +175,6 @@ struct Stmt {
 struct Function {
     std::string name;
     Type result;
-    bool handle = false; ///< the result is of type `shader`
     std::vector<Symbol*> parameters;
     std::vector<ExprPtr>
         defaults; ///< of a method: what a parameter is that a call leaves out; empty, or null where there is none

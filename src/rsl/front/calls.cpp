@@ -22,28 +22,36 @@ std::string unknownFunctionHint(const std::string& name, const std::vector<std::
 std::vector<Checker::ParameterView> Checker::views(const Signature& s, const Shadeop& op) {
     std::vector<ParameterView> v;
     for (const auto& p : s.parameters) {
-        const bool handle = p.name == "handle" && s.text.find("shader handle") != std::string::npos &&
-                            s.text.find("(string handle") == std::string::npos;
-        const bool either =
-            p.output || p.type.base == Base::Void || p.type.array != 0 || op.section == "Arrays" || op.name == "isoutput";
-        v.push_back({p.type, p.output, either ? Handle::Either : handle ? Handle::Shader : Handle::Text});
+        const bool any = p.output || p.type.array != 0 || op.section == "Arrays" || op.name == "isoutput";
+        v.push_back({p.type, p.output, any && isStringLike(p.type.base)});
     }
     return v;
 }
 
 std::vector<Checker::ParameterView> Checker::views(const Function& f) {
     std::vector<ParameterView> v;
-    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, p->handle ? Handle::Shader : Handle::Text, p->whole});
+    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, false, p->whole});
     return v;
+}
+
+/// The type that the argument is wanted as: of two that the parameter takes that which it has.
+Type Checker::wantedType(const ParameterView& p, const Expr& argument) const {
+    if (!p.anyText) return p.type;
+    const Base other = p.type.base == Base::String ? Base::Shader : Base::String;
+    const auto isOther = [&](const Info& i) {
+        return i.array.array ? i.array.base == other : i.cost[int(other)] < i.cost[int(p.type.base)];
+    };
+    const Info& info = infos_.at(&argument);
+    const bool list = info.listLength > 0 && argument.kind == ExprKind::ArrayList;
+    return {isOther(list ? infos_.at(argument.args[0].get()) : info) ? other : p.type.base, p.type.array};
 }
 
 /// What it costs to give this argument to a parameter of that type; kNever if it cannot be.
 int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool ignoreOutputs) {
     const Info& info = infos_.at(&argument);
-    const Type wanted = parameter.type;
-    const bool output = parameter.output;
     if (info.any) return 0;
-    if (wanted.base == Base::String && !alike(info.handle, parameter.handle)) return kNever;
+    const Type wanted = wantedType(parameter, argument);
+    const bool output = parameter.output;
     if (output && !isVariable(argument) && !ignoreOutputs) return kNever;
     if (wanted.base == Base::Void) return info.listLength >= 0 ? kNever : 0; // any value
     if (wanted.array != 0) {
@@ -72,7 +80,7 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
 bool Checker::isText(const Expr& e) const {
     if (e.kind == ExprKind::String) return true;
     const Info& text = infos_.at(&e);
-    return text.cost[int(Base::String)] == 0 && text.handle != Handle::Shader && cheapest(text) == Base::String;
+    return text.cost[int(Base::String)] == 0 && cheapest(text) == Base::String;
 }
 
 bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, bool pairs, Expr& call, Choice& choice,
@@ -124,90 +132,98 @@ static void nameSources(Expr& e) {
     }
 }
 
-void Checker::inferCall(Expr& e, Info& info) {
-    nameSources(e);
-    bool broken = false;
-    for (auto& a : e.args) broken |= infer(*a).any;
-    if (e.text.empty()) {
-        info.any = true;
-        return; // what is called was reported
+/// The candidates for one call, and why those that do not fit do not.
+struct Checker::Candidates {
+    Checker& c;
+    Expr& call;
+    Info& info;
+    const bool broken;  ///< an argument is wrong, which has been reported
+    const bool shipped; ///< the call was put here by a pass before this one: a function of the renderer, whatever the shader has
+    bool known = false;
+    bool outputsOnly = false; ///< one would fit if it were not for its output parameters
+    std::vector<std::string> texts{}, notes{};
+
+    void offer(Choice, const std::vector<ParameterView>&, bool repeats, bool pairs, const std::string& text);
+    void offer(Function&, const Unit* unit);
+    void offer(const Shadeop*);
+    void offerFunctions();
+    void offerShadeops();
+};
+
+void Checker::Candidates::offer(Choice choice, const std::vector<ParameterView>& parameters, bool repeats, bool pairs,
+                                const std::string& text) {
+    known = true;
+    texts.push_back(text);
+    if (c.match(parameters, repeats, pairs, call, choice, false)) return info.choices.push_back(choice);
+    outputsOnly |= c.match(parameters, repeats, pairs, call, choice, true);
+    if (!broken && notes.size() < size_t(limits::kCandidateNotes))
+        notes.push_back("candidate " + text + ": " + c.whyNot(parameters, repeats, pairs, call));
+}
+
+/// `unit`: where the function is defined; null for a nested one.
+void Checker::Candidates::offer(Function& f, const Unit* unit) {
+    Choice choice;
+    choice.function = &f;
+    choice.nested = !unit;
+    choice.unit = unit;
+    choice.result = f.result;
+    offer(choice, views(f), false, false, c.signatureText(f));
+}
+
+void Checker::Candidates::offer(const Shadeop* op) {
+    if (!op) return;
+    for (const Signature& s : op->signatures) {
+        Choice choice;
+        choice.shadeop = op;
+        choice.signature = &s;
+        choice.result = s.result;
+        offer(choice, views(s, *op), s.repeats, s.pairs, s.text);
     }
-    const bool shipped = e.text.starts_with("::"); // by a pass before this one: not what the shader calls so
-    if (shipped) e.text.erase(0, 2);
-    std::vector<std::string> candidates, notes;
-    bool known = false, outputsOnly = false;
-    const auto offer = [&](Choice choice, const std::vector<ParameterView>& parameters, bool repeats, bool pairs,
-                           const std::string& text) {
-        known = true;
-        candidates.push_back(text);
-        if (match(parameters, repeats, pairs, e, choice, false)) {
-            info.choices.push_back(choice);
-        } else {
-            outputsOnly |= match(parameters, repeats, pairs, e, choice, true);
-            if (!broken && notes.size() < size_t(limits::kCandidateNotes))
-                notes.push_back("candidate " + text + ": " + whyNot(parameters, repeats, pairs, e));
-        }
-    };
-    for (size_t i = scopes_.size(); i-- > 0 && info.choices.empty() && !shipped;) {
-        const auto [from, to] = scopes_[i].functions.equal_range(e.text);
-        for (auto f = from; f != to; ++f) {
-            Choice c;
-            c.function = f->second;
-            c.nested = true;
-            c.result = f->second->result;
-            offer(c, views(*f->second), false, false, signatureText(*f->second));
-        }
+}
+
+/// Functions of the shader: the innermost scope that has one that fits, then those of the file.
+void Checker::Candidates::offerFunctions() {
+    if (shipped) return;
+    for (size_t i = c.scopes_.size(); i-- > 0 && info.choices.empty();) {
+        const auto [from, to] = c.scopes_[i].functions.equal_range(call.text);
+        for (auto f = from; f != to; ++f) offer(*f->second, nullptr);
     }
-    if (info.choices.empty() && !shipped)
-        for (const auto& f : unit_->functions) {
-            if (f->name != e.text) continue;
-            Choice c;
-            c.function = f.get();
-            c.unit = unit_;
-            c.result = f->result;
-            // A shadeop written in RSL may call the shadeop of its own name with other arguments, not itself.
-            if (unit_ != &main_ && checking_.count(f.get())) continue;
-            offer(c, views(*f), false, false, signatureText(*f));
-        }
-    const auto offerAll = [&](const Shadeop* op) {
-        if (!op) return;
-        for (const Signature& s : op->signatures) {
-            Choice c;
-            c.shadeop = op;
-            c.signature = &s;
-            c.result = s.result;
-            offer(c, views(s, *op), s.repeats, s.pairs, s.text);
-        }
-    };
-    // A function of the shader's own joins those of its name, and the one that fits best is called; among functions that fit
-    // equally well the first counts: the shader's, then those of plug-ins.
-    if (unit_ == &main_ && !shipped)
-        for (const auto& p : program_.plugins) offerAll(p->find(e.text));
-    if (unit_ == &main_ || info.choices.empty()) offerAll(findShadeop(e.text));
-    if (info.choices.empty()) {
-        info.any = true;
-        if (known && broken) return; // what went wrong inside was reported
-        if (known) return noMatch(e, candidates, std::move(notes), outputsOnly);
-        if (unit_->hides(e.text)) return;
-        std::vector<std::string> names;
-        for (const auto& f : unit_->functions) names.push_back(f->name);
-        for (const auto& s : scopes_)
-            for (const auto& [name, f] : s.functions) names.push_back(name);
-        std::sort(names.begin(), names.end());
-        for (const Shadeop& s : shadeops())
-            if (s.name.rfind("__", 0) != 0) names.push_back(s.name);
-        sources_.report(e.place, msg::kNoSuchFunction(e.text), unknownFunctionHint(e.text, names));
-        return;
+    if (!info.choices.empty()) return;
+    for (const auto& f : c.unit_->functions) {
+        // A shadeop written in RSL may call the shadeop of its own name with other arguments, not itself.
+        const bool itself = c.unit_ != &c.main_ && c.checking_.count(f.get());
+        if (f->name == call.text && !itself) offer(*f, c.unit_);
     }
-    bestByArguments(info.choices);
+}
+
+/// A function of the shader's own joins those of its name, and the one that fits best is called; among functions that fit equally
+/// well the first counts: the shader's, then those of plug-ins.
+void Checker::Candidates::offerShadeops() {
+    if (c.unit_ == &c.main_ && !shipped)
+        for (const auto& p : c.program_.plugins) offer(p->find(call.text));
+    if (c.unit_ == &c.main_ || info.choices.empty()) offer(findShadeop(call.text));
+}
+
+void Checker::unknownFunction(const Expr& e) {
+    if (unit_->hides(e.text)) return;
+    std::vector<std::string> names;
+    for (const auto& f : unit_->functions) names.push_back(f->name);
+    for (const auto& s : scopes_)
+        for (const auto& [name, f] : s.functions) names.push_back(name);
+    std::sort(names.begin(), names.end());
+    for (const Shadeop& s : shadeops())
+        if (s.name.rfind("__", 0) != 0) names.push_back(s.name);
+    sources_.report(e.place, msg::kNoSuchFunction(e.text), unknownFunctionHint(e.text, names));
+}
+
+/// The types that the call can have by its choices, and what each costs.
+void Checker::inferResults(const Expr& e, Info& info) {
     for (Choice& c : info.choices)
         if (c.shadeop && c.result.array == 0 && std::ranges::count(c.shadeop->lastResort, c.result.base)) c.cost += kLastResort;
-    for (const Choice& c : info.choices)
-        if (c.result.base == Base::String) {
-            const bool fromArray = c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty();
-            const bool handle = c.function ? c.function->handle : c.signature->text.compare(0, 6, "shader") == 0;
-            info.handle = fromArray ? infos_.at(e.args[0].get()).handle : handle ? Handle::Shader : Handle::Text;
-        }
+    for (Choice& c : info.choices) // pop() of an array of handles
+        if (c.result.base == Base::String && c.shadeop && c.shadeop->section == "Arrays" && !e.args.empty() &&
+            infos_.at(e.args[0].get()).array.base == Base::Shader)
+            c.result.base = Base::Shader;
     for (const Choice& c : info.choices) {
         if (c.result.array != 0) {
             info.array = c.result;
@@ -217,12 +233,31 @@ void Checker::inferCall(Expr& e, Info& info) {
         cost = std::min(cost, c.cost);
     }
     // Of a call that can give one value or several, the single value is chosen unless an array is wanted.
-    if (info.array.array) {
-        bool single = false;
-        for (int c : info.cost) single |= c < kNever;
-        if (single) info.array = {};
-    }
+    if (info.array.array && std::ranges::any_of(info.cost, [](int c) { return c < kNever; })) info.array = {};
     if (!info.array.array) info.either = eitherOf(e, info, infos_);
+}
+
+void Checker::inferCall(Expr& e, Info& info) {
+    nameSources(e);
+    bool broken = false;
+    for (auto& a : e.args) broken |= infer(*a).any;
+    if (e.text.empty()) {
+        info.any = true;
+        return; // what is called was reported
+    }
+    const bool shipped = e.text.starts_with("::");
+    if (shipped) e.text.erase(0, 2);
+    Candidates candidates{*this, e, info, broken, shipped};
+    candidates.offerFunctions();
+    candidates.offerShadeops();
+    if (!info.choices.empty()) {
+        bestByArguments(info.choices);
+        return inferResults(e, info);
+    }
+    info.any = true;
+    if (candidates.known && broken) return; // what went wrong inside was reported
+    if (candidates.known) return noMatch(e, candidates.texts, std::move(candidates.notes), candidates.outputsOnly);
+    unknownFunction(e);
 }
 
 /// Info::either of a call: it has the same parameters for a float and a tuple; or its arguments make it either, as in
@@ -312,7 +347,7 @@ void Checker::resolveCall(ExprPtr& pointer, Type result) {
             resolveTypes(name, {Base::String, 0});
             a = std::move(name);
         } else {
-            resolveTypes(a, p.type, p.handle);
+            resolveTypes(a, wantedType(p, *a));
             // printf("%s", h->name): what another shader gives, of whatever type it is.
             const bool element = a->kind == ExprKind::Index && a->args[0]->kind == ExprKind::Member;
             const bool member = a->kind == ExprKind::Member || a->kind == ExprKind::Method || element;

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "rsl/front/checker.h"
 #include "rsl/front/protocol.h"
+#include "rsl/front/writes.h"
 #include <algorithm>
 #include <cstdlib>
 #include <set>
@@ -41,71 +42,76 @@ bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
     return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;
 }
 
-void Checker::bindShadeop(Expr& e, const Choice& choice) {
-    const Shadeop& op = *choice.shadeop;
-    e.shadeop = &op;
-    e.signature = choice.signature;
-    if (op.name == "outputchannel" || op.name == "writeaov") {
-        const Type type = e.args[1]->type;
-        const bool written = e.args[0]->kind == ExprKind::String; // else it is any name that displays ask for
-        const std::string name = written ? ChannelName::parse(e.args[0]->text).name : kAnyChannel + toString(type);
-        const bool parameter = written && shaderParameters_.count(name) > 0;
-        if (type.array < 0 && !parameter) {
-            sources_.report(e.args[1]->place, msg::kChannelOpen);
-        } else {
-            const auto [i, fresh] = program_.channels.emplace(name, type);
-            const Type first = i->second;
-            if (!fresh && !parameter &&
-                (componentCount(first.base) != componentCount(type.base) || (first.array != 0) != (type.array != 0)))
-                sources_.report(e.args[1]->place, msg::kChannelTypes(name, toString(first), toString(type)));
-        }
+/// outputchannel() and writeaov() make an output of that name.
+void Checker::bindChannel(const Expr& e) {
+    const Type type = e.args[1]->type;
+    const bool written = e.args[0]->kind == ExprKind::String; // else it is any name that displays ask for
+    const std::string name = written ? ChannelName::parse(e.args[0]->text).name : kAnyChannel + toString(type);
+    const bool parameter = written && shaderParameters_.count(name) > 0;
+    if (type.array < 0 && !parameter) {
+        sources_.report(e.args[1]->place, msg::kChannelOpen);
+        return;
     }
-    if (op.name == "getvar" && e.args[1]->kind == ExprKind::String)
+    const auto [i, fresh] = program_.channels.emplace(name, type);
+    const Type first = i->second;
+    if (!fresh && !parameter &&
+        (componentCount(first.base) != componentCount(type.base) || (first.array != 0) != (type.array != 0)))
+        sources_.report(e.args[1]->place, msg::kChannelTypes(name, toString(first), toString(type)));
+}
+
+void Checker::bindPrimitiveVariable(const Expr& e) {
+    const std::string& op = e.shadeop->name;
+    if (op == "getvar" && e.args[1]->kind == ExprKind::String)
         program_.primitiveVariables.emplace(e.args[1]->text, e.args.size() > 2 ? e.args[2]->type : Type{});
-    if (op.name == "readprimvar" && e.args[0]->kind == ExprKind::String)
+    if (op == "readprimvar" && e.args[0]->kind == ExprKind::String)
         program_.primitiveVariables.emplace(e.args[0]->text, e.args[1]->type);
-    static const std::set<std::string_view> kOfHandles = {"getshader", "getshaders", "getvar", "readprimvar", "hasmethod"};
-    program_.handles |= kOfHandles.count(op.name) > 0;
-    if (op.name == "resize" || op.name == "reserve" || op.name == "push" || op.name == "pop") {
-        const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
-        const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));
-        if (s && !open && s->type.base != Base::Void)
-            sources_.report(e.args[0]->place, msg::kFixedLength(s->name),
-                            s->origin == Symbol::Origin::Local
-                                ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
-                                : "only local arrays and parameters of functions can change theirs");
+}
+
+/// resize() and the like change the length of an array, which must be open.
+void Checker::bindArrayChange(const Expr& e) {
+    const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
+    const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));
+    if (s && !open && s->type.base != Base::Void)
+        sources_.report(e.args[0]->place, msg::kFixedLength(s->name),
+                        s->origin == Symbol::Origin::Local ? "declare it as " + toString(s->type.element()) + " " + s->name + "[]"
+                                                           : "only local arrays and parameters of functions can change theirs");
+    if (e.shadeop->name == "push" && e.args.size() == 2 && s && isStringLike(s->type.base) &&
+        isStringLike(e.args[1]->type.base)) {
+        const Info& value = infos_.at(e.args[1].get());
+        if (value.cost[int(s->type.base)] >= kNever)
+            sources_.report(e.args[1]->place, msg::kTypeMismatch(toString(s->type.element()), describe(*e.args[1])));
     }
-    if (op.name == "push" && e.args.size() == 2 && e.args[0]->symbol && e.args[1]->type.base == Base::String) {
-        const Handle array = e.args[0]->symbol->handle ? Handle::Shader : Handle::Text;
-        if (const Info& value = infos_.at(e.args[1].get()); !alike(array, value.handle))
-            sources_.report(e.args[1]->place, msg::kTypeMismatch(named({Base::String, 0}, array), describe(*e.args[1])));
-    }
-    if (kind_ && !(op.contexts & contextOf(*kind_)) && !(function_ && function_->anywhere)) {
-        std::string where;
-        for (int k = 0; k < 6; ++k)
-            if (op.contexts & contextOf(ShaderKind(k)))
-                where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
-        sources_.report(e.place, msg::kWrongShaderKind(op.name, toString(*kind_)), "it can in: " + where);
-        return; // its text would be wrong here line by line
-    }
+}
+
+/// Whether shaders of this kind may call it; reported if not.
+bool Checker::allowedHere(const Expr& e) {
+    const Shadeop& op = *e.shadeop;
+    if (!kind_ || (op.contexts & contextOf(*kind_)) || (function_ && function_->anywhere)) return true;
+    std::string where;
+    for (int k = 0; k < 6; ++k)
+        if (op.contexts & contextOf(ShaderKind(k))) where += (where.empty() ? "" : ", ") + std::string(toString(ShaderKind(k)));
+    sources_.report(e.place, msg::kWrongShaderKind(op.name, toString(*kind_)), "it can in: " + where);
+    return false;
+}
+
+/// Whether the result is uniform or varying.
+void Checker::classOfResult(Expr& e, const Choice& choice) {
+    const Shadeop& op = *e.shadeop;
     if (uniformResult(e, choice)) {
         e.varying = false; // a length is that of all points
         for (size_t i = 0; i < e.args.size() && op.section != "Arrays"; ++i)
-            if (!choice.signature->parameters[std::min(i, choice.signature->parameters.size() - 1)].output)
-                e.varying |= e.args[i]->varying;
+            if (writesArgument(e, i) == Writes::No) e.varying |= e.args[i]->varying;
     } else if (op.lowering != Lowering::Runtime && op.lowering != Lowering::Special && op.lowering != Lowering::Rsl &&
                op.name != "format" && op.name != "concat") {
         e.varying = true;
         if (e.type.base != Base::Void) readsPoint(e, "what '" + op.name + "' gives");
     }
     if (op.name == "rayinfo") readsPoint(e, "what 'rayinfo' gives", false); // the same for the points of one batch, but of a ray
-    // shadow("raytrace", ...) sends rays. A map by that name is known here only where it is written down.
-    const bool rays =
-        op.name == "shadow" && !e.args.empty() && e.args[0]->kind == ExprKind::String && e.args[0]->text == "raytrace";
-    if (op.lowering == Lowering::Unavailable && !rays && reportedUnavailable_.insert(&op).second)
-        sources_.report(
-            e.place, msg::kShadeopNotAvailable(op.name, e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
-    if (op.lowering != Lowering::Rsl) return;
+}
+
+/// Tokens of a shadeop whose text is RSL. A choice among texts gives what is renamed in the one that is called.
+std::pair<std::string, std::string> Checker::checkTextPairs(const Expr& e) {
+    const Shadeop& op = *e.shadeop;
     std::pair<std::string, std::string> rename;
     for (const NamedArg& p : e.pairs) {
         // The one shadeop in RSL with a choice of kernels.
@@ -114,12 +120,18 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
             filter.erase(std::remove(filter.begin(), filter.end(), '-'), filter.end());
             if (findShadeop("__filterstep_" + filter)) rename = {"__filterstep_catmullrom", "__filterstep_" + filter};
             else sources_.report(p.place, msg::kNoSuchStepFilter(p.value->text));
-        } else if (optionalInText(op) > 0) {
-        } else if (op.name != "filterstep" && std::any_of(op.optional.begin(), op.optional.end(),
-                                                          [&](const OptionalParameter& o) { return o.name == p.name; })) {
+        } else if (optionalInText(op) == 0 && op.name != "filterstep" &&
+                   std::ranges::any_of(op.optional, [&](const OptionalParameter& o) { return o.name == p.name; })) {
             sources_.report(p.place, msg::kParameterNotAvailable(p.name, op.name));
         }
     }
+    return rename;
+}
+
+/// The call becomes one of the function that is the text of the shadeop.
+void Checker::bindText(Expr& e, const Choice& choice) {
+    const Shadeop& op = *e.shadeop;
+    const auto rename = checkTextPairs(e);
     const Unit& unit = rslUnit(op);
     const size_t behind = optionalInText(op);
     const size_t count = choice.signature->parameters.size();
@@ -142,6 +154,26 @@ void Checker::bindShadeop(Expr& e, const Choice& choice) {
     sources_.report(e.place, msg::kNoText(op.name, choice.signature->text));
 }
 
+void Checker::bindShadeop(Expr& e, const Choice& choice) {
+    const Shadeop& op = *choice.shadeop;
+    e.shadeop = &op;
+    e.signature = choice.signature;
+    if (op.name == "outputchannel" || op.name == "writeaov") bindChannel(e);
+    bindPrimitiveVariable(e);
+    static const std::set<std::string_view> kOfHandles = {"getshader", "getshaders", "getvar", "readprimvar", "hasmethod"};
+    program_.handles |= kOfHandles.count(op.name) > 0;
+    if (op.name == "resize" || op.name == "reserve" || op.name == "push" || op.name == "pop") bindArrayChange(e);
+    if (!allowedHere(e)) return; // its text would be wrong here line by line
+    classOfResult(e, choice);
+    // shadow("raytrace", ...) sends rays. A map by that name is known here only where it is written down.
+    const bool rays =
+        op.name == "shadow" && !e.args.empty() && e.args[0]->kind == ExprKind::String && e.args[0]->text == "raytrace";
+    if (op.lowering == Lowering::Unavailable && !rays && reportedUnavailable_.insert(&op).second)
+        sources_.report(
+            e.place, msg::kShadeopNotAvailable(op.name, e.type.base == Base::Void ? "the call does nothing" : "its value is 0"));
+    if (op.lowering == Lowering::Rsl) bindText(e, choice);
+}
+
 /// The tokens become the last arguments, in the order of the descriptor.
 void Checker::optionalArguments(Expr& e, const Shadeop& op) {
     for (const OptionalParameter& o : op.optional) {
@@ -150,7 +182,7 @@ void Checker::optionalArguments(Expr& e, const Shadeop& op) {
             if (p.name == o.name) given = std::move(p.value);
         if (!given) {
             given = std::make_unique<Expr>();
-            const bool text = o.type.base == Base::String; // every string's default is none
+            const bool text = isStringLike(o.type.base); // every string's default is none
             given->kind = text ? ExprKind::String : ExprKind::Number;
             if (!text) given->number = std::strtod(o.defaultText.c_str(), nullptr);
             given->type = o.type;
@@ -229,7 +261,7 @@ void Checker::resolvePairs(Expr& e, size_t positional, const Shadeop* op) {
             }
         } else if (optional->output) {
             pair.output = true;
-            const int cost = argumentCost(*value, {optional->type, true, Handle::Either}, false);
+            const int cost = argumentCost(*value, {optional->type, true, isStringLike(optional->type.base)}, false);
             const bool array = info.array.array && info.array.base == optional->type.base;
             if (cost >= kNever && !array) {
                 sources_.report(value->place, msg::kOutputPair(pair.name, toString(optional->type)));

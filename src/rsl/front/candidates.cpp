@@ -16,8 +16,6 @@ namespace front {
 
 namespace {
 
-std::string typeText(Type t, bool handle) { return handle ? "shader" + toString(t).substr(6) : toString(t); }
-
 /// What was written at one place among arguments or parameters: a value, or a structure, which by now is as many as it has
 /// members.
 struct Written {
@@ -40,13 +38,13 @@ template <class F> std::vector<Written> asWritten(size_t count, F wholeAt) {
 
 std::string Checker::signatureText(const Function& f) const {
     const auto parameters = asWritten(f.parameters.size(), [&](size_t i) { return f.parameters[i]->whole; });
-    std::string result = typeText(f.result, f.handle), list;
+    std::string result = toString(f.result), list;
     for (const Symbol* p : f.parameters)
         if (p->whole.self && p->name.starts_with("(result)")) result = toString(p->whole, program_);
     for (const Written& w : parameters) {
         const Symbol& p = *f.parameters[w.at];
         list += (list.empty() ? "" : ", ") + std::string(p.output ? "output " : "") +
-                (w.structure ? toString(p.whole, program_) : typeText(p.type, p.handle));
+                (w.structure ? toString(p.whole, program_) : toString(p.type));
     }
     return result + " " + f.name + "(" + list + ")";
 }
@@ -67,7 +65,7 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
             const std::string which = "argument " + std::to_string(k + 1);
             if (plain && p.output && !isVariable(a)) return which + " is an output and must be a variable";
             return which + " is " + (given[k].structure ? toString(a.whole, program_) : describe(a)) + ", not " +
-                   (taken[k].structure ? toString(p.whole, program_) : named(p.type, p.handle)) +
+                   (taken[k].structure ? toString(p.whole, program_) : toString(p.type)) +
                    (p.output ? ", and what is put out is not converted" : "");
         }
         return "a structure does not fit";
@@ -84,7 +82,7 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
         if (argumentCost(*call.args[i], p, false) < kNever) continue;
         const std::string which = "argument " + std::to_string(i + 1);
         if (p.output && !isVariable(*call.args[i])) return which + " is an output and must be a variable";
-        return which + " is " + describe(*call.args[i]) + ", not " + named(p.type, p.handle) +
+        return which + " is " + describe(*call.args[i]) + ", not " + toString(p.type) +
                (p.output ? ", and what is put out is not converted" : "");
     }
     if (i == n) return "";

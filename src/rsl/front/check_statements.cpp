@@ -17,10 +17,10 @@ void Checker::whole(ExprPtr& e) {
     infos_.clear();
 }
 
-void Checker::valueOf(ExprPtr& e, Type t, bool handle) {
+void Checker::valueOf(ExprPtr& e, Type t) {
     infos_.clear();
     infer(*e);
-    resolveTypes(e, t, handle ? Handle::Shader : Handle::Text);
+    resolveTypes(e, t);
     infos_.clear();
 }
 
@@ -94,7 +94,7 @@ bool sameForAll(const Expr& e, Known& known) {
 } // namespace
 
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
-    if (s.storage != Storage::Uniform || !value.varying || s.type.base == Base::String) return;
+    if (s.storage != Storage::Uniform || !value.varying || isStringLike(s.type.base)) return;
     const Expr& whole = value.kind == ExprKind::Index ? *value.args[0] : value;
     if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method)
         return; // what a handle gives is of the class that is wanted
@@ -121,7 +121,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
     const bool scalar = s.type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
     if (scalar) {
         // float a[42] = 0: {0, ...}.
-        resolveTypes(value, s.type.element(), s.handle ? Handle::Shader : Handle::Text);
+        resolveTypes(value, s.type.element());
         auto list = std::make_unique<Expr>();
         list->kind = ExprKind::ArrayList;
         list->place = value->place;
@@ -132,7 +132,7 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
         list->args.push_back(std::move(value));
         value = std::move(list);
     } else {
-        resolveTypes(value, s.type, s.handle ? Handle::Shader : Handle::Text);
+        resolveTypes(value, s.type);
     }
     infos_.clear();
     if (sources_.errors() == errors) assignedToUniform(s, *value);
@@ -168,6 +168,18 @@ void Checker::checkLoopBody(Stmt& s) {
     ++loops_;
     check(s.body[0]);
     --loops_;
+}
+
+void Checker::checkReturn(Stmt& s) {
+    if (function_ && function_->result.base != Base::Void) {
+        if (s.value) valueOf(s.value, function_->result);
+        else sources_.report(s.place, msg::kReturnEmpty(function_->name, toString(function_->result)));
+        return;
+    }
+    if (!s.value) return;
+    whole(s.value);
+    if (function_) sources_.report(s.value->place, msg::kVoidReturnValue(function_->name));
+    else sources_.report(s.place, msg::kShaderReturnValue);
 }
 
 void Checker::check(StmtPtr& s) {
@@ -216,21 +228,7 @@ void Checker::check(StmtPtr& s) {
         break;
     }
     case StmtKind::Return:
-        if (!function_) {
-            if (s->value) {
-                whole(s->value);
-                sources_.report(s->place, msg::kShaderReturnValue);
-            }
-        } else if (function_->result.base == Base::Void) {
-            if (s->value) {
-                whole(s->value);
-                sources_.report(s->value->place, msg::kVoidReturnValue(function_->name));
-            }
-        } else if (!s->value) {
-            sources_.report(s->place, msg::kReturnEmpty(function_->name, toString(function_->result)));
-        } else {
-            valueOf(s->value, function_->result, function_->handle);
-        }
+        checkReturn(*s);
         break;
     case StmtKind::Illuminance:
     case StmtKind::Illuminate:
@@ -270,69 +268,80 @@ void Checker::statementPair(Stmt& s, ExprPtr token, ExprPtr value) {
     s.pairs.push_back(std::move(pair));
 }
 
-void Checker::checkLight(Stmt& s) {
-    static const std::map<StmtKind, std::pair<const char*, uint32_t>> kRules = {
-        {StmtKind::Illuminance, {"illuminance", kSurface | kVolume}},
-        {StmtKind::Illuminate, {"illuminate", kLight}},
-        {StmtKind::Solar, {"solar", kLight}},
-        {StmtKind::Gather, {"gather", kSurface | kVolume | kLight}}};
-    const auto [word, contexts] = kRules.at(s.kind);
-    const std::string name = word;
-    const bool foreign = kind_ && !(contexts & contextOf(*kind_));
-    if (foreign) sources_.report(s.place, msg::kWrongShaderKind(name, toString(*kind_)));
-    std::vector<ExprPtr> given = std::move(s.exprs);
-    s.exprs.clear();
+namespace {
+
+/// A statement about light: what it is called, where it may stand, and its arguments before pairs.
+struct LightForm {
+    StmtKind kind;
+    const char* name;
+    uint32_t contexts;
+    bool rays; ///< it takes a category and pairs
+    std::vector<std::vector<Base>> forms;
+    const char* text; ///< of the forms, for messages
+};
+
+const LightForm& lightForm(StmtKind kind) {
+    static const std::vector<Base> kNothing, kPoint = {Base::Point}, kAxis = {Base::Vector, Base::Float},
+                                             kCone = {Base::Point, Base::Vector, Base::Float},
+                                             kRays = {Base::Point, Base::Vector, Base::Float, Base::Float};
+    static const LightForm kForms[] = {
+        {StmtKind::Illuminance,
+         "illuminance",
+         kSurface | kVolume,
+         true,
+         {kPoint, kCone},
+         "illuminance([category,] P [, axis, angle] [, pairs])"},
+        {StmtKind::Illuminate, "illuminate", kLight, false, {kPoint, kCone}, "illuminate(from [, axis, angle])"},
+        {StmtKind::Solar, "solar", kLight, false, {kNothing, kAxis}, "solar() or solar(axis, angle)"},
+        {StmtKind::Gather,
+         "gather",
+         kSurface | kVolume | kLight,
+         true,
+         {kRays},
+         "gather(category, P, dir, angle, samples [, pairs]) statement [else statement]"}};
+    return *std::ranges::find(kForms, kind, &LightForm::kind);
+}
+
+} // namespace
+
+bool Checker::isGivenString(const std::vector<ExprPtr>& given, size_t i) const {
+    return i < given.size() && infos_.at(given[i].get()).cost[int(Base::String)] < kNever;
+}
+
+/// The arguments of a statement before its pairs. Returns where the pairs begin.
+size_t Checker::lightPositions(Stmt& s, std::vector<ExprPtr>& given) {
+    const LightForm& form = lightForm(s.kind);
     size_t next = 0;
-    infos_.clear();
-    for (auto& e : given) infer(*e);
-    const auto isString = [&](size_t i) {
-        return i < given.size() && infos_.at(given[i].get()).cost[int(Base::String)] < kNever;
-    };
-    bool fits = true;
-    const auto want = [&](std::initializer_list<Base> types) {
-        if (!fits) return;
-        for (Base b : types) {
-            if (next < given.size()) {
-                resolveTypes(given[next], {b, 0});
-                s.exprs.push_back(std::move(given[next++]));
-            }
-        }
-    };
-    if ((s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) && isString(0)) {
+    if (form.rays && isGivenString(given, 0)) {
         resolveTypes(given[0], {Base::String, 0});
         s.category = std::move(given[next++]);
     } else if (s.kind == StmtKind::Gather) {
         sources_.report(s.place, msg::kGatherCategory);
     }
     size_t positions = 0;
-    while (next + positions < given.size() && !isString(next + positions)) ++positions;
-    const bool pairs = s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather;
-    const auto wrong = [&](const char* forms) {
-        sources_.report(s.place, msg::kLightArguments(name), forms);
-        fits = false; // one message for all of them
-    };
-    const bool rest = !pairs && next + positions < given.size();
-    switch (s.kind) {
-    case StmtKind::Illuminance:
-        if (positions != 1 && positions != 3) wrong("illuminance([category,] P [, axis, angle] [, pairs])");
-        want(positions == 1 ? std::initializer_list<Base>{Base::Point}
-                            : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
-        break;
-    case StmtKind::Illuminate:
-        if (rest || (positions != 1 && positions != 3)) wrong("illuminate(from [, axis, angle])");
-        want(positions == 1 ? std::initializer_list<Base>{Base::Point}
-                            : std::initializer_list<Base>{Base::Point, Base::Vector, Base::Float});
-        break;
-    case StmtKind::Solar:
-        if (rest || (positions != 0 && positions != 2)) wrong("solar() or solar(axis, angle)");
-        if (positions) want({Base::Vector, Base::Float});
-        break;
-    default:
-        if (positions != 4) wrong("gather(category, P, dir, angle, samples [, pairs]) statement [else statement]");
-        want({Base::Point, Base::Vector, Base::Float, Base::Float});
-        break;
+    while (next + positions < given.size() && !isGivenString(given, next + positions)) ++positions;
+    const bool rest = !form.rays && next + positions < given.size();
+    const auto types = std::ranges::find(form.forms, positions, &std::vector<Base>::size);
+    if (rest || types == form.forms.end()) {
+        sources_.report(s.place, msg::kLightArguments(form.name), form.text);
+        return given.size(); // one message for all of them
     }
-    next = fits ? positions + (s.category ? 1 : 0) : given.size();
+    for (const Base b : *types) {
+        resolveTypes(given[next], {b, 0});
+        s.exprs.push_back(std::move(given[next++]));
+    }
+    return next;
+}
+
+void Checker::checkLight(Stmt& s) {
+    const LightForm& form = lightForm(s.kind);
+    const bool foreign = kind_ && !(form.contexts & contextOf(*kind_));
+    if (foreign) sources_.report(s.place, msg::kWrongShaderKind(form.name, toString(*kind_)));
+    std::vector<ExprPtr> given = std::move(s.exprs);
+    s.exprs.clear();
+    infos_.clear();
+    for (auto& e : given) infer(*e);
+    size_t next = lightPositions(s, given);
     // Pairs: the value behind "light:x" or "surface:x" is a variable to be filled; "send:..." goes the other way.
     while (next < given.size()) {
         ExprPtr token = std::move(given[next++]);
@@ -346,8 +355,17 @@ void Checker::checkLight(Stmt& s) {
     }
     infos_.clear();
     const bool outerForeign = std::exchange(foreignLight_, foreignLight_ || foreign);
+    checkLightBody(s);
+    foreignLight_ = outerForeign;
+    if (!s.elseBody) return;
+    ++loops_; // it is a turn of the loop, too
+    check(s.elseBody);
+    --loops_;
+}
+
+void Checker::checkLightBody(Stmt& s) {
     scopes_.emplace_back();
-    if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Gather) checkLoopBody(s);
+    if (lightForm(s.kind).rays) checkLoopBody(s);
     else {
         // The block of a light is no loop: leaving one from inside it has no meaning.
         const int loops = std::exchange(loops_, 0);
@@ -355,11 +373,6 @@ void Checker::checkLight(Stmt& s) {
         loops_ = loops;
     }
     scopes_.pop_back();
-    foreignLight_ = outerForeign;
-    if (!s.elseBody) return;
-    ++loops_; // it is a turn of the loop, too
-    check(s.elseBody);
-    --loops_;
 }
 
 bool Checker::endsInReturn(const Stmt& s) {

@@ -97,7 +97,7 @@ void Checker::checkBody(Function& f) {
     scopes_.emplace_back();
     for (Symbol*& p : f.parameters) {
         if (p->storage == Storage::Unspecified) {
-            p->storage = p->type.base == Base::String ? Storage::Uniform : Storage::Varying;
+            p->storage = isStringLike(p->type.base) ? Storage::Uniform : Storage::Varying;
             if (p->storage == Storage::Varying) unclassed_.insert(p);
         }
         if (p->name == "," || p->name == ")" || p->name == ";") continue; // it has no name
@@ -191,19 +191,14 @@ void Checker::bindExtern(Symbol& declared) {
     } else if (outer->type.base != Base::Void) {
         Type a = outer->type, b = declared.type;
         // Old shaders type everything point.
-        const bool same = outer->handle == declared.handle && (a.base == b.base || (a.isPointLike() && b.isPointLike())) &&
-                          (a.array == b.array || b.array == -1);
-        if (!same) {
-            sources_.report(declared.place,
-                            msg::kExternType(declared.name, named(a, outer->handle ? Handle::Shader : Handle::Text),
-                                             named(b, declared.handle ? Handle::Shader : Handle::Text)));
-        }
+        const bool same = (a.base == b.base || (a.isPointLike() && b.isPointLike())) && (a.array == b.array || b.array == -1);
+        if (!same) { sources_.report(declared.place, msg::kExternType(declared.name, toString(a), toString(b))); }
     }
     scopes_.back().names[declared.name] = outer;
 }
 
 void Checker::declareLocal(Symbol& s) {
-    if (s.storage == Storage::Unspecified) s.storage = s.type.base == Base::String ? Storage::Uniform : Storage::Varying;
+    if (s.storage == Storage::Unspecified) s.storage = isStringLike(s.type.base) ? Storage::Uniform : Storage::Varying;
     auto [at, fresh] = scopes_.back().names.emplace(s.name, &s);
     if (fresh) return;
     if (at->second->type != s.type && at->second->type.base != Base::Void && s.type.base != Base::Void)

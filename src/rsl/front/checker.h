@@ -29,16 +29,12 @@ private:
         int cost = 0;
         size_t positional = 0; ///< arguments before the token/value pairs
     };
-    /// A string is a text or, of type `shader`, a handle; the two do not mix.
-    enum class Handle : uint8_t { Text, Shader, Either };
-    static bool alike(Handle a, Handle b) { return a == b || a == Handle::Either || b == Handle::Either; }
     struct Info {
         std::array<int, kBases> cost;
-        Type array;                   ///< the expression is an array of this type
-        int listLength = -1;          ///< it is written {a, b}: an array of whatever its elements become
-        bool any = false;             ///< erroneous, and reported: fits everywhere
-        Handle handle = Handle::Text; ///< what the string is, if it is one
-        bool channel = false;         ///< name[channel] of a string that is no array
+        Type array;           ///< the expression is an array of this type
+        int listLength = -1;  ///< it is written {a, b}: an array of whatever its elements become
+        bool any = false;     ///< erroneous, and reported: fits everywhere
+        bool channel = false; ///< name[channel] of a string that is no array
         std::vector<Choice> choices;
         /// A call that differs only in what it returns, a float or a tuple, and makes the expression either. Not what is read
         /// from maps and rays: how many channels these bring is in the map, not in the text.
@@ -50,7 +46,7 @@ private:
     struct ParameterView {
         Type type;
         bool output;
-        Handle handle = Handle::Text;
+        bool anyText = false; ///< a string where a handle does as well, or the other way about
         Whole whole{};
     };
     static std::vector<ParameterView> views(const Signature&, const Shadeop&);
@@ -78,9 +74,13 @@ private:
     void check(StmtPtr&);
     void checkDeclare(Stmt&);
     void checkLight(Stmt&);
+    size_t lightPositions(Stmt&, std::vector<ExprPtr>& given);
+    bool isGivenString(const std::vector<ExprPtr>& given, size_t i) const;
+    void checkReturn(Stmt&);
+    void checkLightBody(Stmt&);
     void checkLoopBody(Stmt&);
     void condition(ExprPtr&);
-    void valueOf(ExprPtr&, Type, bool handle = false);
+    void valueOf(ExprPtr&, Type);
     void whole(ExprPtr&);
     void initialise(Symbol&, ExprPtr&);
     void assignedToUniform(const Symbol&, const Expr&);
@@ -94,10 +94,16 @@ private:
     void inferAssign(Expr&, Info&);
     void inferConditional(Expr&, Info&);
     void inferCast(Expr&, Info&);
+    void inferUnary(Expr&, Info&);
+    void inferTuple(Expr&, Info&);
+    struct Candidates;
     void inferCall(Expr&, Info&);
+    void inferResults(const Expr& call, Info&);
+    void unknownFunction(const Expr& call);
     void inferMember(Expr&, Info&);
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, const ParameterView& wanted, bool ignoreOutputs);
+    Type wantedType(const ParameterView&, const Expr& argument) const;
     static void bestByArguments(std::vector<Choice>&);
     void preferArray(const Expr&, Type wanted);
     void noMatch(Expr& call, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly);
@@ -109,7 +115,6 @@ private:
     static const Expr* eitherOf(const Expr& call, const Info&, const std::unordered_map<const Expr*, Info>&);
     void becomesTuple(const Info&, const Expr& settled, Base wanted);
     static std::string componentHint(Base tuple);
-    static std::string named(Type, Handle); ///< "shader" for a handle
     static Base cheapest(const Info&);
     static int costTo(const Info&, Base to);
     static int operandCost(ExprOp, const Operation&, const Info& left, Base leftAs, const Info& right, Base rightAs);
@@ -120,12 +125,15 @@ private:
     void poison(Expr&, Info&);
 
     // resolveTypes (resolve.cpp, calls.cpp)
-    void resolveTypes(ExprPtr&, Type, Handle = Handle::Text); ///< to this type, with conversions
+    void resolveTypes(ExprPtr&, Type); ///< to this type, with conversions
     void resolveCheapest(ExprPtr&);
     void resolveAs(ExprPtr&, Base); ///< exactly this type, which must have a finite cost
+    void resolveParts(ExprPtr&, Base);
+    void resolveHandle(ExprPtr&, Base);
+    void resolveCast(ExprPtr&, Base);
     void resolveIndexed(ExprPtr&);
     void resolveCondition(ExprPtr&);
-    void resolveArray(ExprPtr&, Type, Handle = Handle::Either);
+    void resolveArray(ExprPtr&, Type);
     void resolveVariable(ExprPtr&); ///< an output argument: no conversion
     void resolveBinary(ExprPtr&, Base);
     void resolveAssign(ExprPtr&);
@@ -133,6 +141,13 @@ private:
     void optionalArguments(Expr&, const Shadeop&);
     void resolvePairs(Expr&, size_t positional, const Shadeop*);
     void bindShadeop(Expr&, const Choice&);
+    void bindChannel(const Expr&);
+    void bindPrimitiveVariable(const Expr&);
+    void bindArrayChange(const Expr&);
+    bool allowedHere(const Expr&);
+    void classOfResult(Expr&, const Choice&);
+    void bindText(Expr&, const Choice&);
+    std::pair<std::string, std::string> checkTextPairs(const Expr&);
     bool uniformResult(const Expr&, const Choice&) const;
     void convert(ExprPtr&, Type);
     void written(const Expr& variable);

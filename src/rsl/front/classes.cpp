@@ -3,6 +3,7 @@
 #include "base/printable.h"
 #include "rsl/front/clone.h"
 #include "rsl/front/nodes.h"
+#include "rsl/front/visit.h"
 #include <algorithm>
 #include <functional>
 #include <map>
@@ -37,42 +38,29 @@ const std::vector<Entry>& entries() {
     return all;
 }
 
-/// Calls `see` for every expression and statement of a text.
-struct Walk {
-    std::function<void(const Expr&)> expr = [](const Expr&) {};
-    std::function<void(const Stmt&)> stmt = [](const Stmt&) {};
-    void operator()(const ExprPtr& e) const {
-        if (!e) return;
-        expr(*e);
-        for (const auto& a : e->args) (*this)(a);
-        (*this)(e->space);
-        (*this)(e->channel);
-        for (const auto& p : e->pairs) (*this)(p.value);
-    }
-    void operator()(const StmtPtr& s) const {
-        if (!s) return;
-        stmt(*s);
-        for (const auto& b : s->body) (*this)(b);
-        (*this)(s->elseBody);
-        for (const ExprPtr* e : {&s->condition, &s->init, &s->step, &s->value, &s->category}) (*this)(*e);
-        for (const auto& d : s->declarators) (*this)(d.init);
-        for (const auto& e : s->exprs) (*this)(e);
-        for (const auto& p : s->pairs) (*this)(p.value);
-        if (s->definition) (*this)(s->definition->body);
-    }
-};
+using OfStatement = std::function<void(const Stmt&)>;
+using OfExpression = std::function<void(const Expr&)>;
+
+/// Calls `statement` and `expression` for all of a method, functions inside of it too.
+void everyPart(const StmtPtr& body, const OfStatement& statement, const OfExpression& expression) {
+    if (!body) return;
+    const auto inside = [&](const Stmt& s) {
+        statement(s);
+        if (s.definition) everyPart(s.definition->body, statement, expression);
+    };
+    everyStmt(*body, inside, expression);
+}
 
 class Expansion {
 public:
     Expansion(const ClassDefinition& c, Unit& u, SourceSet& s) : class_(c), unit_(u), sources_(s) {
         for (const auto& f : c.shader->nested) {
-            Walk w;
-            w.expr = [&](const Expr& e) {
+            const OfExpression call = [&](const Expr& e) {
                 // surface("Kd", k) asks the shader of that kind, also where a method has the name.
                 const bool asks = isEntry(e.text) && !e.args.empty() && e.args[0]->kind == ExprKind::String;
                 if (e.kind == ExprKind::ShadeopCall && !asks) calls_[f->name].insert(e.text);
             };
-            w(f->body);
+            everyPart(f->body, [](const Stmt&) {}, call);
             names_.insert(f->name);
         }
     }
@@ -213,9 +201,9 @@ private:
                 return make(StmtKind::Block, f.place);
             }
             if (!optional(i) && !irradiance && locals->declarators.empty())
-                sources_.report(p.place, msg::kNoDefault(p.name, p.type.base != Base::String ? "zero"
-                                                                 : p.handle                  ? "null"
-                                                                                             : "empty"));
+                sources_.report(p.place, msg::kNoDefault(p.name, !isStringLike(p.type.base)    ? "zero"
+                                                                 : p.type.base == Base::Shader ? "null"
+                                                                                               : "empty"));
             auto symbol = std::make_unique<Symbol>(p);
             symbol->name = "(" + name + ")->" + p.name;
             symbol->origin = Symbol::Origin::Local;
@@ -231,9 +219,10 @@ private:
     /// A method light() either has illuminate() or solar() like a light shader, or sets L itself.
     void light(Shader& s) {
         bool blocks = false;
-        Walk w;
-        w.stmt = [&](const Stmt& x) { blocks |= x.kind == StmtKind::Illuminate || x.kind == StmtKind::Solar; };
-        for (const auto& n : reachable(ShaderKind::Light)) w(method(n)->body);
+        const OfStatement blocksOf = [&](const Stmt& x) {
+            blocks |= x.kind == StmtKind::Illuminate || x.kind == StmtKind::Solar;
+        };
+        for (const auto& n : reachable(ShaderKind::Light)) everyPart(method(n)->body, blocksOf, [](const Expr&) {});
         const Function& written = *method("light");
         const Place place = written.place;
         if (blocks) {
@@ -287,13 +276,12 @@ private:
         block->body.push_back(assign("Ol", names[2]));
         bool directed = false; // a light that never sets L is ambient
         const std::string L = written.parameters.empty() ? "L" : written.parameters[0]->name;
-        Walk sets;
-        sets.expr = [&](const Expr& e) {
+        const OfExpression sets = [&](const Expr& e) {
             if (e.kind == ExprKind::Assign && e.args[0]->text == L) directed = true;
             if (e.kind == ExprKind::ShadeopCall)
                 for (const auto& a : e.args) directed |= a->text == L && names_.count(e.text);
         };
-        sets(written.body);
+        everyPart(written.body, [](const Stmt&) {}, sets);
         if (!directed) {
             s.body->body.push_back(std::move(block));
             return;

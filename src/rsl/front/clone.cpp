@@ -28,11 +28,14 @@ struct Cloner {
         for (const auto& a : e.args) c->args.push_back(copy(a));
         c->space = copy(e.space);
         c->channel = copy(e.channel);
-        for (const auto& p : e.pairs) c->pairs.push_back({p.name, copy(p.value), p.output, p.place, p.named});
+        copy(e.pairs, c->pairs);
         c->shadeop = e.shadeop;
         c->signature = e.signature;
         c->function = e.function;
         return c;
+    }
+    void copy(const std::vector<NamedArg>& from, std::vector<NamedArg>& to) {
+        for (const auto& p : from) to.push_back({p.name, copy(p.value), p.output, p.place, p.named});
     }
     StmtPtr copy(const StmtPtr& s) {
         if (!s) return nullptr;
@@ -48,6 +51,8 @@ struct Cloner {
         c->levels = s->levels;
         for (const auto& d : s->declarators) c->declarators.push_back({symbols.at(d.symbol), copy(d.init)});
         for (const auto& e : s->exprs) c->exprs.push_back(copy(e));
+        c->category = copy(s->category);
+        copy(s->pairs, c->pairs);
         if (s->definition) c->definition = functions.at(s->definition);
         return c;
     }
@@ -55,7 +60,7 @@ struct Cloner {
         auto c = std::make_unique<Function>();
         c->name = f.name;
         c->result = f.result;
-        c->handle = f.handle;
+        c->anywhere = f.anywhere;
         c->place = f.place;
         for (const auto& s : f.symbols) {
             c->symbols.push_back(std::make_unique<Symbol>(*s));
@@ -78,6 +83,8 @@ std::unique_ptr<Shader> clone(const Shader& s) {
     Cloner c;
     auto n = std::make_unique<Shader>();
     n->kind = s.kind;
+    n->object = s.object;
+    n->publics = s.publics;
     n->name = s.name;
     n->place = s.place;
     n->annotations = s.annotations;

@@ -46,15 +46,12 @@ private:
 void checkColourNames(const Program& program, SourceSet& sources) {
     ColourNameCheck names(sources);
     const auto expression = [&](const Expr& e) { names.call(e); };
-    const auto body = [&](const Stmt* s) {
-        if (s) everyStmt(*s, [](const Stmt&) {}, expression);
-    };
     for (const auto& s : program.shaders) {
         for (const auto& p : s->parameters)
             if (p.defaultValue) everyExpr(*p.defaultValue, expression);
-        body(s->body.get());
+        if (s->body) everyExpr(*s->body, expression);
     }
-    everyFunction(program, [&](const Function& f) { body(f.body.get()); });
+    everyFunctionBody(program, [&](const Stmt& body) { everyExpr(body, expression); });
 }
 
 } // namespace alpenglow::rsl::front

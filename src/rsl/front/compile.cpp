@@ -41,7 +41,7 @@ StructSummary summary(const StructType& s, const Unit& unit) {
     r.name = s.name;
     r.place = s.place;
     for (const StructMember& m : s.members) {
-        std::string type = m.handle ? "shader" : toString(m.type.element());
+        std::string type = toString(m.type.element());
         if (isStruct(m.type)) {
             const size_t index = size_t(int(m.type.base) - kFirstStruct);
             type = index < unit.structs.size() ? unit.structs[index].name : "struct";

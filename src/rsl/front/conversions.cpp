@@ -46,9 +46,10 @@ std::optional<Operation> operation(ExprOp op, Base l, Base r) {
         r = Base::Float;
         cost += 4 * kConversion;
     }
-    if (l == Base::String || r == Base::String) {
-        if (l != r || (op != ExprOp::Equal && op != ExprOp::NotEqual && op != ExprOp::Add)) return std::nullopt;
-        return Operation{Base::String, op == ExprOp::Add ? Base::String : Base::Bool, cost};
+    if (isStringLike(l) || isStringLike(r)) { // handles are compared with handles, and not joined
+        const bool joins = op == ExprOp::Add && l == Base::String;
+        if (l != r || (op != ExprOp::Equal && op != ExprOp::NotEqual && !joins)) return std::nullopt;
+        return Operation{l, joins ? Base::String : Base::Bool, cost};
     }
     if (l == Base::Void || r == Base::Void) return std::nullopt;
     if (l == Base::Matrix || r == Base::Matrix) {

@@ -6,8 +6,8 @@
 namespace alpenglow::rsl::front {
 
 namespace {
-constexpr Base kAll[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
-                         Base::Normal, Base::Matrix, Base::String, Base::Bool};
+constexpr Base kAll[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector, Base::Normal,
+                         Base::Matrix, Base::String, Base::Shader, Base::Bool};
 constexpr Base kTuples[] = {Base::Color, Base::Point, Base::Vector, Base::Normal};
 int sum(int a, int b) { return std::min(a + b, kNever); }
 } // namespace
@@ -41,21 +41,55 @@ void Checker::poison(Expr&, Info& info) { info.any = true; }
 std::string Checker::describe(Expr& e) {
     const Info& info = infos_.at(&e);
     if (info.any) return "an error";
-    if (info.array.array) return named(info.array, info.handle);
+    if (info.array.array) return toString(info.array);
     if (info.listLength >= 0) return "an array of " + std::to_string(info.listLength);
     if (e.kind == ExprKind::Tuple) return "a triple";
     const Base b = cheapest(info);
-    return b == Base::Bool ? "a truth value" : b == Base::Void ? "nothing" : named({b, 0}, info.handle);
+    return b == Base::Bool ? "a truth value" : b == Base::Void ? "nothing" : toString({b, 0});
 }
 
 std::string Checker::componentHint(Base b) {
     return std::string("a component is read by x[0] or ") + (b == Base::Color ? "comp(x, 0)" : "xcomp(x)");
 }
 
-std::string Checker::named(Type t, Handle h) {
-    if (t.base != Base::String || h != Handle::Shader) return toString(t);
-    const std::string s = toString(t);
-    return "shader" + s.substr(std::string("string").size());
+void Checker::inferUnary(Expr& e, Info& info) {
+    const Info& a = infer(*e.args[0]);
+    if (a.any) {
+        info.any = true;
+        return;
+    }
+    if (e.op == ExprOp::Not) {
+        int c = kNever;
+        for (Base b : kAll) c = std::min(c, sum(a.cost[int(b)], conditionCost(b)));
+        info.cost[int(Base::Bool)] = c;
+    } else {
+        info.cost[int(Base::Float)] = std::min(a.cost[int(Base::Float)], sum(a.cost[int(Base::Bool)], 4));
+        for (Base b : kTuples) info.cost[int(b)] = a.cost[int(b)];
+        info.either = a.either;
+        info.number = a.number;
+    }
+    if (cheapest(info) != Base::Void) return;
+    sources_.report(e.place, msg::kBadOperand(spelling(e.op), describe(*e.args[0])));
+    poison(e, info);
+}
+
+/// (a, b, c), or sixteen numbers of a matrix.
+void Checker::inferTuple(Expr& e, Info& info) {
+    int cost = 0;
+    if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser has reported it
+    for (auto& a : e.args) {
+        const Info& i = infer(*a);
+        const int c = costTo(i, Base::Float);
+        if (c >= kNever) {
+            sources_.report(a->place, msg::kBadComponent(describe(*a)));
+            poison(e, info);
+        }
+        cost = sum(cost, c);
+    }
+    if (info.any) return;
+    if (e.kind == ExprKind::MatrixTuple) info.cost[int(Base::Matrix)] = cost;
+    else
+        for (Base b : kTuples) info.cost[int(b)] = cost;
 }
 
 Checker::Info& Checker::infer(Expr& e) {
@@ -66,8 +100,7 @@ Checker::Info& Checker::infer(Expr& e) {
         info.cost[int(Base::Float)] = 0;
         break;
     case ExprKind::String:
-        info.cost[int(Base::String)] = 0;
-        info.handle = e.handle ? Handle::Shader : Handle::Text;
+        info.cost[int(e.handle ? Base::Shader : Base::String)] = 0;
         break;
     case ExprKind::Variable:
         inferVariable(e, info);
@@ -75,28 +108,9 @@ Checker::Info& Checker::infer(Expr& e) {
     case ExprKind::Index:
         inferIndex(e, info);
         break;
-    case ExprKind::Unary: {
-        const Info& a = infer(*e.args[0]);
-        if (a.any) {
-            info.any = true;
-            break;
-        }
-        if (e.op == ExprOp::Not) {
-            int c = kNever;
-            for (Base b : kAll) c = std::min(c, sum(a.cost[int(b)], conditionCost(b)));
-            info.cost[int(Base::Bool)] = c;
-        } else {
-            info.cost[int(Base::Float)] = std::min(a.cost[int(Base::Float)], sum(a.cost[int(Base::Bool)], 4));
-            for (Base b : kTuples) info.cost[int(b)] = a.cost[int(b)];
-            info.either = a.either;
-            info.number = a.number;
-        }
-        if (cheapest(info) == Base::Void) {
-            sources_.report(e.place, msg::kBadOperand(spelling(e.op), describe(*e.args[0])));
-            poison(e, info);
-        }
+    case ExprKind::Unary:
+        inferUnary(e, info);
         break;
-    }
     case ExprKind::Binary:
         inferBinary(e, info);
         break;
@@ -107,30 +121,12 @@ Checker::Info& Checker::infer(Expr& e) {
         inferConditional(e, info);
         break;
     case ExprKind::Tuple:
-    case ExprKind::MatrixTuple: {
-        int cost = 0;
-        if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser has reported it
-        for (auto& a : e.args) {
-            const Info& i = infer(*a);
-            const int c = costTo(i, Base::Float);
-            if (c >= kNever) {
-                sources_.report(a->place, msg::kBadComponent(describe(*a)));
-                poison(e, info);
-            }
-            cost = sum(cost, c);
-        }
-        if (info.any) break;
-        if (e.kind == ExprKind::MatrixTuple) info.cost[int(Base::Matrix)] = cost;
-        else
-            for (Base b : kTuples) info.cost[int(b)] = cost;
+    case ExprKind::MatrixTuple:
+        inferTuple(e, info);
         break;
-    }
     case ExprKind::ArrayList:
         info.listLength = int(e.args.size());
-        info.handle = Handle::Either;
-        for (auto& a : e.args)
-            if (const Info& i = infer(*a); i.cost[int(Base::String)] < kNever && info.handle == Handle::Either)
-                info.handle = i.handle;
+        for (auto& a : e.args) infer(*a);
         break;
     case ExprKind::Cast:
         inferCast(e, info);
@@ -160,14 +156,13 @@ void Checker::inferMember(Expr& e, Info& info) {
     for (auto& a : e.args) info.any |= infos_.at(a.get()).any;
     if (info.any) return;
     const Info& of = infos_.at(e.args[0].get());
-    if (of.array.array || costTo(of, Base::String) >= kNever || of.handle == Handle::Text) {
+    if (of.array.array || costTo(of, Base::Shader) >= kNever) {
         sources_.report(e.place, msg::kMemberOfNothing(describe(*e.args[0])));
         info.any = true;
         return;
     }
     // What it gives is known when the shader is bound: here it is what is wanted.
     for (Base b : kAll) info.cost[int(b)] = b == Base::Float ? 0 : b == Base::Bool ? kNever : 1;
-    info.handle = Handle::Either;
 }
 
 void Checker::inferVariable(Expr& e, Info& info) {
@@ -187,8 +182,7 @@ void Checker::inferVariable(Expr& e, Info& info) {
         e.kind = ExprKind::String;
         e.text.clear();
         e.handle = true;
-        info.cost[int(Base::String)] = 0;
-        info.handle = Handle::Shader;
+        info.cost[int(Base::Shader)] = 0;
         return;
     }
     if (!s && (e.text == "surface" || e.text == "caller" || e.text == "light")) { // handles that RSL 2 has names for
@@ -196,8 +190,7 @@ void Checker::inferVariable(Expr& e, Info& info) {
         e.text = "(" + e.text + ")";
         e.handle = true;
         program_.handles = true;
-        info.cost[int(Base::String)] = 0;
-        info.handle = Handle::Shader;
+        info.cost[int(Base::Shader)] = 0;
         return;
     }
     if (!s) {
@@ -206,7 +199,6 @@ void Checker::inferVariable(Expr& e, Info& info) {
         return;
     }
     e.symbol = s;
-    info.handle = s->handle ? Handle::Shader : Handle::Text;
     if (s->type.base == Base::Void) info.any = true;
     else if (s->type.array != 0) info.array = s->type;
     else info.cost[int(s->type.base)] = 0;
@@ -227,12 +219,10 @@ void Checker::inferIndex(Expr& e, Info& info) {
     }
     if (ofHandle) {
         info.cost = base.cost;
-        info.handle = Handle::Either;
         return;
     }
     if (base.array.array) {
         info.cost[int(base.array.base)] = 0;
-        info.handle = base.handle;
         const Expr& i = *e.args[1];
         const Symbol* array = e.args[0]->symbol; // one of open length may be longer than its default
         if (i.kind == ExprKind::Number && base.array.array > 0 && !(array && array->open && i.number > -1) &&
@@ -292,10 +282,6 @@ void Checker::inferBinary(Expr& e, Info& info) {
         info.any = true;
         return;
     }
-    const bool strings = l.cost[int(Base::String)] < kNever && r.cost[int(Base::String)] < kNever;
-    // A handle is compared with a handle, and never joined to a text.
-    const bool mixed = strings && (!alike(l.handle, r.handle) ||
-                                   (e.op == ExprOp::Add && (l.handle == Handle::Shader || r.handle == Handle::Shader)));
     const bool arithmetic = e.op == ExprOp::Add || e.op == ExprOp::Sub || e.op == ExprOp::Mul || e.op == ExprOp::Div;
     if (arithmetic && isNumber(l) && isNumber(r)) info.number = l.number ? l.number : r.number;
     else if (arithmetic && isNumber(r)) info.number = l.either;
@@ -305,7 +291,6 @@ void Checker::inferBinary(Expr& e, Info& info) {
         if (l.cost[int(a)] >= kNever) continue;
         for (Base b : kAll) {
             if (r.cost[int(b)] >= kNever) continue;
-            if (mixed && a == Base::String && b == Base::String) continue;
             if (const auto o = operation(e.op, a, b)) {
                 int& c = info.cost[int(o->result)];
                 // A truth is a truth: how it was come by chooses nothing around it.
@@ -346,8 +331,7 @@ void Checker::inferAssign(Expr& e, Info& info) {
         const bool fits = r.listLength >= 0 ? l.array.array < 0 || r.listLength <= l.array.array
                                             : r.array.base == l.array.base && r.array.array != 0 &&
                                                   (r.array.array == l.array.array || r.array.array < 0 || l.array.array < 0);
-        info.handle = l.handle;
-        if (!fits || (l.array.base == Base::String && !alike(l.handle, r.handle)) || e.op != ExprOp::Assign) {
+        if (!fits || e.op != ExprOp::Assign) {
             sources_.report(e.place, msg::kBadAssignment(describe(*e.args[1]), describe(*e.args[0])));
             info.any = true;
         } else info.array = l.array;
@@ -364,10 +348,7 @@ void Checker::inferAssign(Expr& e, Info& info) {
                 cost = std::min(cost, r.cost[int(b)] + operandCost(e.op, *o, l, target, r, b) + implicitCost(o->result, target));
         }
     }
-    info.handle = l.handle;
-    const bool handles = l.handle == Handle::Shader || r.handle == Handle::Shader;
-    const bool mixed = target == Base::String && (!alike(l.handle, r.handle) || (e.op != ExprOp::Assign && handles));
-    if (cost >= kNever || l.channel || mixed) {
+    if (cost >= kNever || l.channel) {
         const bool toFloat = target == Base::Float && Type{cheapest(r), 0}.isTuple();
         const std::string to = describe(*e.args[0]), from = describe(*e.args[1]);
         sources_.report(e.place,
@@ -396,9 +377,7 @@ void Checker::inferConditional(Expr& e, Info& info) {
         if (a.cost[int(t)] < kNever || b.cost[int(t)] < kNever) info.cost[int(t)] = sum(cost, sum(costTo(a, t), costTo(b, t)));
     if (isNumber(a) && isNumber(b)) info.number = a.number ? a.number : b.number;
     else if ((a.either || isNumber(a)) && (b.either || isNumber(b))) info.either = a.either ? a.either : b.either;
-    const bool strings = a.cost[int(Base::String)] < kNever && b.cost[int(Base::String)] < kNever;
-    info.handle = a.handle == Handle::Either ? b.handle : a.handle;
-    if (cheapest(info) == Base::Void || (strings && !alike(a.handle, b.handle))) {
+    if (cheapest(info) == Base::Void) {
         sources_.report(e.place, msg::kBadAlternatives(describe(*e.args[1]), describe(*e.args[2])));
         info.any = true;
     }
@@ -411,7 +390,7 @@ void Checker::inferCast(Expr& e, Info& info) {
         const Symbol* s = nullptr;
         for (size_t i = scopes_.size(); i-- > 0 && !s;)
             if (const auto f = scopes_[i].names.find(operand.text); f != scopes_[i].names.end()) s = f->second;
-        if (s && s->type == Type{Base::String, 0} && !findShadeop(operand.text)) {
+        if (s && storedType(s->type) == Type{Base::String, 0} && !findShadeop(operand.text)) {
             e.space = std::make_unique<Expr>();
             e.space->kind = ExprKind::Variable;
             e.space->text = operand.text;
@@ -421,7 +400,7 @@ void Checker::inferCast(Expr& e, Info& info) {
     }
     if (e.space) {
         const Info& s = infer(*e.space);
-        if (!s.any && (costTo(s, Base::String) >= kNever || s.handle == Handle::Shader)) {
+        if (!s.any && (costTo(s, Base::String) >= kNever)) {
             sources_.report(e.space->place, msg::kSpaceName);
             info.any = true;
         }
@@ -446,10 +425,9 @@ void Checker::inferCast(Expr& e, Info& info) {
     }
     int cost = kNever;
     for (Base b : kAll) cost = std::min(cost, sum(a.cost[int(b)], castCost(b, e.type.base)));
-    info.handle = e.handle ? Handle::Shader : Handle::Text;
-    if (cost >= kNever || (e.type.base == Base::String && !alike(a.handle, info.handle))) {
+    if (cost >= kNever) {
         const bool toFloat = e.type.base == Base::Float && Type{cheapest(a), 0}.isTuple();
-        sources_.report(e.place, msg::kBadConversion(describe(operand), named(e.type, info.handle)),
+        sources_.report(e.place, msg::kBadConversion(describe(operand), toString(e.type)),
                         toFloat ? componentHint(cheapest(a)) : "");
         info.any = true;
         return;

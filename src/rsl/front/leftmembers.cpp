@@ -1,5 +1,6 @@
 #include "rsl/front/leftmembers.h"
 #include "rsl/front/visit.h"
+#include "rsl/front/writes.h"
 #include <functional>
 #include <set>
 
@@ -15,17 +16,12 @@ struct Deeds {
     bool looks = false; ///< at the place of the sample, which a displacement moves
 };
 
-const Symbol* rootOf(const Expr* e) {
-    while ((e->kind == ExprKind::Index || e->kind == ExprKind::Cast) && !e->args.empty()) e = e->args[0].get();
-    return e->kind == ExprKind::Variable ? e->symbol : nullptr;
-}
-
 Deeds deedsOf(const Shader& s, const std::function<bool(const std::string&)>& wanted) {
     static const std::set<std::string> kMoved = {"P", "N", "Ng", "I", "dPdu", "dPdv", "dNdu", "dNdv"};
     Deeds d;
     std::set<const Function*> seen;
-    const auto write = [&](const Expr* e) {
-        if (const Symbol* root = rootOf(e)) d.written.insert(root);
+    const auto write = [&](const Expr& e) {
+        if (const Symbol* root = front::rootOf(e)) d.written.insert(root);
     };
     std::function<void(const Function&)> enter;
     const auto expression = [&](const Expr& e) {
@@ -33,22 +29,10 @@ Deeds deedsOf(const Shader& s, const std::function<bool(const std::string&)>& wa
             d.used.insert(e.symbol);
             d.looks |= e.symbol->origin == Symbol::Origin::Global && kMoved.count(e.symbol->name) > 0;
         }
-        if (e.kind == ExprKind::Assign) write(e.args[0].get());
-        for (size_t n = 0; n < e.args.size(); ++n) {
-            const bool output = e.kind == ExprKind::Method ? n > 0 // its parameters are not known here
-                                : e.signature
-                                    ? n < e.signature->parameters.size() && e.signature->parameters[n].output
-                                    : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
-            if (output && e.args[n]) write(e.args[n].get());
-        }
-        for (const NamedArg& p : e.pairs)
-            if (p.output && p.value) write(p.value.get());
+        front::eachWritten(e, write);
         if (e.function) enter(*e.function);
     };
-    const auto statement = [&](const Stmt& x) {
-        for (const NamedArg& p : x.pairs)
-            if (p.output && p.value) write(p.value.get());
-    };
+    const auto statement = [&](const Stmt& x) { front::eachWritten(x, write); };
     enter = [&](const Function& f) {
         if (f.body && seen.insert(&f).second) front::everyStmt(*f.body, statement, expression);
     };

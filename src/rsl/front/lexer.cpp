@@ -70,6 +70,81 @@ void Lexer::skipBlank(Token& t) {
     }
 }
 
+/// Takes bytes that `accept` takes, over joined lines if the token goes on behind them.
+void Lexer::takeWhile(bool (*accept)(int)) {
+    for (;;) {
+        size_t k = pos_;
+        if (joined(k)) {
+            if (!accept(at(k))) return;
+            joinLine(k);
+        }
+        if (!accept(at(pos_))) return;
+        ++pos_;
+    }
+}
+
+/// Goes on behind the end of a line that is joined to the next.
+void Lexer::joinLine(size_t next) {
+    pos_ = lineBegin_ = next;
+    ++line_;
+    broken_ = true;
+}
+
+void Lexer::scanNumber() {
+    takeWhile(isDigit);
+    if (at(pos_) == '.' && !(at(pos_ + 1) == '.')) {
+        ++pos_;
+        takeWhile(isDigit);
+    }
+    if ((at(pos_) | 32) == 'e') {
+        size_t k = pos_ + 1;
+        if (at(k) == '+' || at(k) == '-') ++k;
+        if (isDigit(at(k))) {
+            pos_ = k;
+            takeWhile(isDigit);
+        }
+    }
+    takeWhile(isWordByte); // letters that do not belong here; the parser says so
+}
+
+/// Whether the string ends on its line.
+bool Lexer::scanString() {
+    for (++pos_;;) {
+        const int d = at(pos_);
+        size_t k = pos_;
+        if (d < 0 || d == '\n') return false;
+        if (joined(k)) {
+            joinLine(k);
+            continue;
+        }
+        pos_ += d == '\\' && at(pos_ + 1) >= 0 && at(pos_ + 1) != '\n' ? 2 : 1;
+        if (d == '"') return true;
+    }
+}
+
+Tok Lexer::scanPunct() {
+    for (auto p : kLong)
+        if (text_.compare(pos_, p.size(), p) == 0) {
+            pos_ += p.size();
+            return Tok::Punct;
+        }
+    const int c = at(pos_++);
+    if (kShort.find(char(c)) != kShort.npos) return Tok::Punct;
+    while (c >= 0x80 && at(pos_) >= 0x80) ++pos_; // the rest of a character of several bytes
+    return Tok::Invalid;
+}
+
+/// The text from `begin` on without the ends of lines that were joined.
+std::string Lexer::joinedText(size_t begin) const {
+    std::string clean;
+    for (size_t i = begin; i < pos_;) {
+        size_t k = i;
+        if (joined(k)) i = k;
+        else clean += text_[i++];
+    }
+    return clean;
+}
+
 Token Lexer::scan() {
     Token t;
     skipBlank(t);
@@ -77,21 +152,7 @@ Token Lexer::scan() {
     lineStart_ = false;
     t.place = {placeFile_, line_ + delta_, int(pos_ - lineBegin_) + 1};
     const size_t begin = pos_;
-    bool broken = false; // a joined line inside the token
-    auto step = [&](auto accept) {
-        for (;;) {
-            size_t k = pos_;
-            if (joined(k)) {
-                // Only if the token goes on behind it.
-                if (!accept(at(k))) return;
-                pos_ = lineBegin_ = k;
-                ++line_;
-                broken = true;
-            }
-            if (!accept(at(pos_))) return;
-            ++pos_;
-        }
-    };
+    broken_ = false;
     const int c = at(pos_);
     if (c < 0) {
         t.kind = Tok::End;
@@ -100,66 +161,17 @@ Token Lexer::scan() {
     }
     if (isWordByte(c) && !isDigit(c)) {
         t.kind = Tok::Identifier;
-        step(isWordByte);
+        takeWhile(isWordByte);
     } else if (isDigit(c) || (c == '.' && isDigit(at(pos_ + 1)))) {
         t.kind = Tok::Number;
-        step(isDigit);
-        if (at(pos_) == '.' && !(at(pos_ + 1) == '.')) {
-            ++pos_;
-            step(isDigit);
-        }
-        if ((at(pos_) | 32) == 'e') {
-            size_t k = pos_ + 1;
-            if (at(k) == '+' || at(k) == '-') ++k;
-            if (isDigit(at(k))) {
-                pos_ = k;
-                step(isDigit);
-            }
-        }
-        step(isWordByte); // letters that do not belong here; the parser says so
+        scanNumber();
     } else if (c == '"') {
-        t.kind = Tok::String;
-        for (++pos_;;) {
-            const int d = at(pos_);
-            size_t k = pos_;
-            if (d < 0 || d == '\n') {
-                t.kind = Tok::Invalid;
-                break;
-            }
-            if (joined(k)) {
-                pos_ = lineBegin_ = k;
-                ++line_;
-                broken = true;
-                continue;
-            }
-            pos_ += d == '\\' && at(pos_ + 1) >= 0 && at(pos_ + 1) != '\n' ? 2 : 1;
-            if (d == '"') break;
-        }
+        t.kind = scanString() ? Tok::String : Tok::Invalid;
     } else {
-        t.kind = Tok::Invalid;
-        for (auto p : kLong)
-            if (text_.compare(pos_, p.size(), p) == 0) {
-                t.kind = Tok::Punct;
-                pos_ += p.size();
-                break;
-            }
-        if (t.kind == Tok::Invalid) {
-            ++pos_;
-            if (kShort.find(char(c)) != kShort.npos) t.kind = Tok::Punct;
-            else
-                while (c >= 0x80 && at(pos_) >= 0x80) ++pos_; // the rest of a character of several bytes
-        }
+        t.kind = scanPunct();
     }
     t.text = text_.substr(begin, pos_ - begin);
-    if (broken) {
-        std::string clean;
-        for (size_t i = begin; i < pos_;) {
-            size_t k = i;
-            if (joined(k)) i = k;
-            else clean += text_[i++];
-        }
-        t.text = sources_.keep(std::move(clean));
-    }
+    if (broken_) t.text = sources_.keep(joinedText(begin));
     return t;
 }
 

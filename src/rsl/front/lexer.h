@@ -41,6 +41,12 @@ public:
 
 private:
     Token scan();
+    void takeWhile(bool (*accept)(int byte));
+    void joinLine(size_t next);
+    void scanNumber();
+    bool scanString();
+    Tok scanPunct();
+    std::string joinedText(size_t begin) const;
     bool joined(size_t& i) const;
     int at(size_t i) const { return i < text_.size() ? static_cast<unsigned char>(text_[i]) : -1; }
     void skipBlank(Token&);
@@ -51,6 +57,7 @@ private:
     size_t pos_ = 0, lineBegin_ = 0;
     int line_ = 1;
     bool lineStart_ = true;
+    bool broken_ = false; ///< there is a joined line inside the token
     bool peeked_ = false;
     Token ahead_;
 };

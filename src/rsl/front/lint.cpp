@@ -1,6 +1,7 @@
 #include "rsl/front/lint.h"
 #include "rsl/front/lint_calls.h"
 #include "rsl/front/visit.h"
+#include "rsl/front/writes.h"
 #include <algorithm>
 #include <array>
 #include <map>
@@ -11,22 +12,14 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
+/// The variable that stands left of an assignment or is put out, as it is written: no conversion of it.
 const Symbol* root(const Expr& e) {
     const Expr* r = &e;
     while (r->kind == ExprKind::Index && !r->args.empty() && r->args[0]) r = r->args[0].get();
     return r->kind == ExprKind::Variable ? r->symbol : nullptr;
 }
 
-/// Is argument i of this call written by it?
-bool isOutput(const Expr& call, size_t i) {
-    if (call.kind == ExprKind::FunctionCall && call.function && !call.shadeop) {
-        const auto& p = call.function->parameters;
-        return i < p.size() && p[i] && p[i]->output;
-    }
-    if (!call.signature) return false;
-    const auto& p = call.signature->parameters;
-    return !p.empty() && p[std::min(i, p.size() - 1)].output;
-}
+bool isOutput(const Expr& call, size_t i) { return writesArgument(call, i) == Writes::Yes; }
 
 /// A set of small numbers that is cheap to copy: a state is copied at every branch.
 class Bits {
@@ -123,7 +116,7 @@ private:
             !told_.insert(s).second)
             return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
-        const char* value = s->type.base != Base::String ? "zero" : s->handle ? "null" : "empty";
+        const char* value = !isStringLike(s->type.base) ? "zero" : s->type.base == Base::Shader ? "null" : "empty";
         sources_.report(e.place, maybe ? msg::kMaybeUninitialised(s->name, value) : msg::kUninitialised(s->name, value));
     }
 
@@ -240,7 +233,7 @@ private:
 
     void uniformHazard(const Expr& target, const Symbol* u) {
         if (!u || varyingConditions_ <= declaredUnder(u) || u->storage != Storage::Uniform ||
-            u->origin != Symbol::Origin::Local || u->type.base == Base::String)
+            u->origin != Symbol::Origin::Local || isStringLike(u->type.base))
             return;
         sources_.report(target.place, msg::kUniformInVarying(u->name));
     }
@@ -302,11 +295,9 @@ private:
             now_.dead = true;
             return;
         default: {
-            everyStmt(
-                s, [](const Stmt&) {},
-                [&](const Expr& e) {
-                    if (e.kind == ExprKind::Assign && !e.args.empty()) given(root(*e.args[0]));
-                });
+            everyExpr(s, [&](const Expr& e) {
+                if (e.kind == ExprKind::Assign && !e.args.empty()) given(root(*e.args[0]));
+            });
             return;
         }
         }
@@ -336,19 +327,15 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
             if (e.symbol) set.insert(e.symbol);
         };
     };
-    const auto skip = [](const Stmt&) {};
     for (const auto& s : program.shaders) {
-        if (s->body) everyStmt(*s->body, skip, mention(used));
+        if (s->body) everyExpr(*s->body, mention(used));
         for (const auto& p : s->parameters)
             if (p.defaultValue) everyExpr(*p.defaultValue, mention(used));
-        for (const auto& n : s->nested)
-            everyFunction(*n, [&](const Function& f) {
-                if (f.body) everyStmt(*f.body, skip, mention(reached));
-            });
+        everyFunctionBody(*s, [&](const Stmt& b) { everyExpr(b, mention(reached)); });
     }
     for (const auto& g : program.functions)
         everyFunction(*g, [&](const Function& f) {
-            if (f.body) everyStmt(*f.body, skip, mention(&f == g.get() ? used : reached));
+            if (f.body) everyExpr(*f.body, mention(&f == g.get() ? used : reached));
         });
     used.insert(reached.begin(), reached.end());
     // A function is there once for each shader that calls it, a class once for each kind of shader it can be: what one of them

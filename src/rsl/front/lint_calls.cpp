@@ -135,19 +135,16 @@ void pattern(const Expr& e, SourceSet& sources) {
             const Base b = v.type.base;
             const bool triple = b == Base::Color || b == Base::Point || b == Base::Vector || b == Base::Normal;
             const char* wants =
-                c == 's' || c == 'h' ? (b == Base::String ? nullptr
-                                        : c == 's'        ? "strings"
-                                                          : "shaders")
+                c == 's' || c == 'h' ? (isStringLike(b) ? nullptr
+                                        : c == 's'      ? "strings"
+                                                        : "shaders")
                 : c == 'm'           ? (b == Base::Matrix ? nullptr : "matrices")
                 : c == 'p' || c == 'c'
                     ? (triple     ? nullptr
                        : c == 'p' ? "points, vectors and normals"
                                   : "colours")
                     : (b == Base::Float || b == Base::Bool || triple ? nullptr : "floats"); // a triple shows its parts
-            if (wants)
-                sources.report(v.place, msg::kFormatKind(c, wants,
-                                                         v.handle || (v.symbol && v.symbol->handle) ? std::string("shader")
-                                                                                                    : toString(v.type)));
+            if (wants) sources.report(v.place, msg::kFormatKind(c, wants, toString(v.type)));
         } else {
             sources.report(e.args[0]->place, c ? msg::kFormatConversion(c) : Raised(msg::kFormatEnd));
         }
@@ -206,7 +203,7 @@ void lintMessage(const Expr& e, const Program& program, SourceSet& sources) {
     else return;
     const Expr* to = e.args[1].get();
     while (to->kind == ExprKind::Index && !to->args.empty()) to = to->args[0].get();
-    if (!to->symbol || to->symbol->storage != Storage::Uniform || to->type.base == Base::String) return;
+    if (!to->symbol || to->symbol->storage != Storage::Uniform || isStringLike(to->type.base)) return;
     const Shader* varying = nullptr;
     for (const auto& s : program.shaders)
         for (const ShaderParameter& p : s->parameters) {

@@ -159,10 +159,9 @@ const Token& Parser::takeName() {
 
 Base Parser::takeBase() {
     const std::string name(take().text);
-    handle_ = name == "shader" && !structs_.count(name);
     if (const auto base = baseNamed(name)) return *base;
     if (const auto s = structs_.find(name); s != structs_.end()) return structBase(size_t(s->second));
-    return Base::String; // a handle of a shader is its name
+    return Base::Shader;
 }
 
 // ---- declarations
@@ -218,10 +217,9 @@ void Parser::topLevel() {
         fail(peek(2).place, msg::kExpectedToken("'(' after the name of shader '" + name + "'", "'" + next + "'"));
     }
     if (plugin()) return;
-    const Specifiers s = specifiers();
+    specifiers();
     const bool typed = atTypeName();
     Type type;
-    handle_ = false;
     if (typed) {
         type.base = takeBase();
         type = dimensions(type);
@@ -231,7 +229,7 @@ void Parser::topLevel() {
         const std::string near = nearestName(first.text, kinds);
         fail(peek().place, msg::kExpectedDefinition(shown()), near.empty() || typed ? "" : "did you mean '" + near + "'?");
     }
-    auto f = function(ofType(s), type, typed);
+    auto f = function(type, typed);
     if (!f) return;
     // Defined again, as when a file is included twice, or when a shader has its own version of what a header gave: the last
     // counts.

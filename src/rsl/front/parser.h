@@ -50,7 +50,6 @@ private:
     };
     struct Specifiers {
         bool output = false, isExtern = false, isConstant = false, any = false;
-        bool handle = false; ///< the type is `shader`
         Storage storage = Storage::Unspecified;
         Place place;
     };
@@ -76,11 +75,7 @@ private:
     }
     bool atName() const; ///< of a variable to be declared; old shaders call theirs vector, normal, matrix
     const Token& takeName();
-    Base takeBase(); ///< sets handle_
-    Specifiers ofType(Specifiers s) const {
-        s.handle = handle_;
-        return s;
-    } ///< with what takeBase() found
+    Base takeBase();
     std::string shown() const;
 
     // declarations (parser.cpp)
@@ -89,9 +84,13 @@ private:
     bool plugin(); ///< at `plugin "name"`, allowed at file level and in place of a statement
     void extends(StructType&);
     void structure(); // parser_objects.cpp
+    void structureBody(StructType&, std::vector<size_t>& methods);
+    void structureMember(StructType&, std::vector<size_t>& methods);
+    void structureMethods(size_t index, const std::vector<size_t>& methods);
+    void skipMethod(size_t begin, std::vector<size_t>& methods);
     void shaderObject();
     void takeAccess();
-    std::unique_ptr<Function> function(const Specifiers&, Type, bool typed);
+    std::unique_ptr<Function> function(Type result, bool typed);
     void parameters(Owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function,
                     std::vector<ExprPtr>* defaults = nullptr);
     Specifiers specifiers();
@@ -109,6 +108,12 @@ private:
     void statements(Stmt& block);
     StmtPtr statement();
     StmtPtr statementOnce();
+    StmtPtr keywordStatement();
+    StmtPtr conditional(StmtKind);
+    StmtPtr jump(StmtKind);
+    StmtPtr returnStatement();
+    bool atDeclaration();
+    void refuseTypeName();
     StmtPtr declaration(bool member = false);
     StmtPtr forLoop();
     StmtPtr doLoop();
@@ -154,7 +159,6 @@ private:
     Owner owner_;                                    ///< of the function or shader being read
     std::unordered_set<std::string_view> typeWords_; ///< variables of it called like the types that came later
     bool inObject_ = false;                          ///< `this` is the shader object being read
-    bool handle_ = false;                            ///< the last type taken was `shader`
     bool returnsValue_ = false;                      ///< a `return expression` was seen in it
     std::unordered_map<std::string, int> structs_;   ///< index in Unit::structs
     std::unordered_set<std::string> told_;           ///< names reported as not yet available

@@ -7,12 +7,11 @@
 namespace alpenglow::rsl::front {
 
 /// At the name. The body is read; a prototype without one gives nothing.
-std::unique_ptr<Function> Parser::function(const Specifiers& s, Type type, bool typed) {
+std::unique_ptr<Function> Parser::function(Type type, bool typed) {
     auto f = std::make_unique<Function>();
     f->place = peek().place;
     f->name = std::string(take().text);
     f->result = type;
-    f->handle = s.handle;
     const Owner outer = owner_;
     const bool outerReturns = returnsValue_;
     const auto outerWords = std::exchange(typeWords_, {});
@@ -116,7 +115,7 @@ int Parser::constantLength(const Expr& e, Place place, bool open) {
 
 /// RSL 1 could name a space in a declaration: color "hsv" c = (0.1, 1, 1).
 ExprPtr Parser::declaredSpace(Base base) {
-    if (peek().kind != Tok::String || base == Base::String || base == Base::Float || base == Base::Void) return nullptr;
+    if (peek().kind != Tok::String || isStringLike(base) || base == Base::Float || base == Base::Void) return nullptr;
     return primary();
 }
 
@@ -144,7 +143,6 @@ Symbol* Parser::declare(Owner owner, const Token& name, Type type, const Specifi
     symbol->output = s.output;
     symbol->isExtern = s.isExtern;
     symbol->isConstant = s.isConstant;
-    symbol->handle = s.handle;
     symbol->place = name.place;
     owner.symbols->push_back(std::move(symbol));
     return owner.symbols->back().get();
@@ -173,7 +171,6 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                 group = specifiers();
                 if (!atTypeName()) failHere(msg::kExpectedType(shown()));
                 base = takeBase();
-                group.handle = handle_;
             }
             if (newGroup) space = declaredSpace(base.value_or(Base::Void));
             if (!base && before && *before != Base::Void && atName() && (peek(1).is("=") || peek(1).is(";") || peek(1).is(","))) {
@@ -209,7 +206,7 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
                     defaults->back() = std::move(value);
                 } else sources_.report(value->place, msg::kFunctionDefault);
             } else if (shader && !symbol->output && !isStruct(type) && type.base != Base::Void && symbol->type.array >= 0) {
-                const char* what = type.base != Base::String ? "zero" : symbol->handle ? "null" : "empty";
+                const char* what = !isStringLike(type.base) ? "zero" : type.base == Base::Shader ? "null" : "empty";
                 sources_.report(symbol->place, msg::kNoDefault(symbol->name, what));
             }
             if (at(")") || at(";") || at(",")) continue;

@@ -143,14 +143,13 @@ ExprPtr Parser::castExpression() {
     Depth depth(*this);
     auto e = node(ExprKind::Cast, peek().place);
     e->type.base = takeBase();
-    e->handle = handle_;
     if (e->type.base == Base::Void) fail(e->place, msg::kVoidValue);
     if (at("[") && peek(1).is("]")) {
         take();
         take();
         e->type.array = -1;
     }
-    if (peek().kind == Tok::String && e->type.base != Base::String) {
+    if (peek().kind == Tok::String && !isStringLike(e->type.base)) {
         size_t k = 0;
         while (peek(k).kind == Tok::String) ++k;
         const Token& n = peek(k);
@@ -160,7 +159,7 @@ ExprPtr Parser::castExpression() {
             grow(*e, *e->space);
         }
     }
-    if (peek().kind == Tok::Identifier && e->type.base != Base::String && e->type.base != Base::Float && !atTypeName() &&
+    if (peek().kind == Tok::Identifier && !isStringLike(e->type.base) && e->type.base != Base::Float && !atTypeName() &&
         (peek(1).kind == Tok::Number || peek(1).kind == Tok::Identifier)) { // matrix space 1, with the space in a variable
         e->space = primary();
         grow(*e, *e->space);
@@ -290,7 +289,6 @@ ExprPtr Parser::parenthesis() {
         sources_.report(place, msg::kCastParentheses, "write " + type + "(...) or " + type + " x");
         ExprPtr e = node(ExprKind::Cast, place);
         e->type.base = takeBase();
-        e->handle = handle_;
         take();
         adopt(*e, unary());
         return e;

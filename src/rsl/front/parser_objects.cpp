@@ -15,8 +15,95 @@ void Parser::extends(StructType& type) {
     take();
     type.base = base->second;
     for (const StructMember& m : unit_.structs[size_t(type.base)].members) {
-        type.members.push_back({m.name, m.type, m.handle, m.storage, m.init ? clone(*m.init) : nullptr, m.place});
+        type.members.push_back({m.name, m.type, m.storage, m.init ? clone(*m.init) : nullptr, m.place});
     }
+}
+
+/// Notes where a method begins, at "(", and goes on behind it: it is read once all members are known.
+void Parser::skipMethod(size_t begin, std::vector<size_t>& methods) {
+    methods.push_back(begin);
+    take();
+    skipBalanced();
+    if (at("{")) skipBalanced();
+    else expectSemicolon("the parameters of a method");
+}
+
+/// At a type: one member or several of that type, or a method.
+void Parser::structureMember(StructType& type, std::vector<size_t>& methods) {
+    takeAccess();
+    const size_t begin = at_;
+    const Specifiers s = specifiers();
+    const auto call = [&](size_t name) { return peek(name).kind == Tok::Identifier && peek(name + 1).is("("); };
+    if (call(0)) return skipMethod(begin, methods);
+    if (at(type.name) && call(1)) {
+        take();
+        return skipMethod(begin, methods);
+    }
+    if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier) fail(peek().place, msg::kStructRecursive);
+    if (!atTypeName()) failHere(msg::kExpectedMemberType(shown()));
+    const Base base = takeBase();
+    if (call(0)) return skipMethod(begin, methods);
+    if (at("[") && peek(1).is("]") && call(2)) {
+        take(), take();
+        return skipMethod(begin, methods);
+    }
+    if (base == Base::Void) fail(s.place, msg::kStructVoid);
+    const ExprPtr space = declaredSpace(base);
+    const Type group = dimensions({base, 0});
+    do {
+        if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a member", shown()));
+        StructMember m;
+        m.place = peek().place;
+        m.name = std::string(take().text);
+        m.type = dimensions(group);
+        m.storage = s.storage;
+        if (accept("=")) m.init = inSpace(at("{") ? arrayList() : assignment(), base, space.get());
+        for (const StructMember& other : type.members)
+            if (other.name == m.name) sources_.report(m.place, msg::kTwoMembers(m.name));
+        type.members.push_back(std::move(m));
+    } while (accept(","));
+    if (!at("}")) expectSemicolon("a member");
+}
+
+/// The members, up to "}". Where methods begin goes to `methods`.
+void Parser::structureBody(StructType& type, std::vector<size_t>& methods) {
+    while (!accept("}")) {
+        if (peek().kind == Tok::End) failHere(msg::kExpectedToken("'}' of structure '" + type.name + "'", shown()));
+        const size_t before = at_;
+        try {
+            if (accept(";") || accept(",")) continue;
+            structureMember(type, methods);
+        } catch (const SyntaxError&) {
+            if (tooDeep_) throw;
+            recover();
+            skippedFrom(before);
+            if (at_ == before && !at("}")) take();
+        }
+    }
+    accept(";");
+}
+
+/// Methods of the structure, by the places where they begin.
+void Parser::structureMethods(size_t index, const std::vector<size_t>& methods) {
+    const size_t behind = at_;
+    const bool inObject = std::exchange(inObject_, false);
+    for (const size_t begin : methods) {
+        at_ = begin;
+        try {
+            specifiers();
+            const bool typed = !(peek().kind == Tok::Identifier && peek(1).is("("));
+            Type result{};
+            if (typed) {
+                result.base = takeBase();
+                result = dimensions(result);
+            }
+            if (auto f = function(result, typed)) unit_.structs[index].methods.push_back(std::move(f));
+        } catch (const SyntaxError&) {
+            if (tooDeep_) throw;
+        }
+    }
+    inObject_ = inObject;
+    at_ = behind;
 }
 
 /// At "struct": struct Name { members }; or struct Name : Other { members };
@@ -33,70 +120,8 @@ void Parser::structure() {
     type.name = std::string(name.text);
     type.place = name.place;
     const int errors = sources_.errors();
-    std::vector<size_t> methods; // read once all members are known
-    const auto skipMethod = [&](size_t begin) {
-        methods.push_back(begin);
-        take();
-        skipBalanced();
-        if (at("{")) skipBalanced();
-        else expectSemicolon("the parameters of a method");
-    };
-    while (!accept("}")) {
-        if (peek().kind == Tok::End) failHere(msg::kExpectedToken("'}' of structure '" + type.name + "'", shown()));
-        const size_t before = at_;
-        try {
-            if (accept(";") || accept(",")) continue;
-            takeAccess();
-            const size_t begin = at_;
-            const Specifiers s = specifiers();
-            if (peek().kind == Tok::Identifier && peek(1).is("(")) {
-                skipMethod(begin);
-                continue;
-            }
-            if (at(type.name) && peek(1).kind == Tok::Identifier && peek(2).is("(")) {
-                take();
-                skipMethod(begin);
-                continue;
-            }
-            if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier)
-                fail(peek().place, msg::kStructRecursive);
-            if (!atTypeName()) failHere(msg::kExpectedMemberType(shown()));
-            const Base base = takeBase();
-            const bool handle = handle_;
-            if (peek().kind == Tok::Identifier && peek(1).is("(")) {
-                skipMethod(begin);
-                continue;
-            }
-            if (at("[") && peek(1).is("]") && peek(2).kind == Tok::Identifier && peek(3).is("(")) {
-                take(), take();
-                skipMethod(begin);
-                continue;
-            }
-            if (base == Base::Void) fail(s.place, msg::kStructVoid);
-            const ExprPtr space = declaredSpace(base);
-            const Type group = dimensions({base, 0});
-            do {
-                if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a member", shown()));
-                StructMember m;
-                m.place = peek().place;
-                m.name = std::string(take().text);
-                m.type = dimensions(group);
-                m.handle = handle;
-                m.storage = s.storage;
-                if (accept("=")) m.init = inSpace(at("{") ? arrayList() : assignment(), base, space.get());
-                for (const StructMember& other : type.members)
-                    if (other.name == m.name) sources_.report(m.place, msg::kTwoMembers(m.name));
-                type.members.push_back(std::move(m));
-            } while (accept(","));
-            if (!at("}")) expectSemicolon("a member");
-        } catch (const SyntaxError&) {
-            if (tooDeep_) throw;
-            recover();
-            skippedFrom(before);
-            if (at_ == before && !at("}")) take();
-        }
-    }
-    accept(";");
+    std::vector<size_t> methods;
+    structureBody(type, methods);
     for (size_t i = begins; i < at_ && sources_.errors() == errors; ++i) {
         type.text += tokens_[i].text;
         type.text += ' ';
@@ -112,28 +137,10 @@ void Parser::structure() {
     }
     if (const auto old = structs_.find(type.name); old != structs_.end())
         sources_.report(type.place, msg::kStructRedefined(type.name));
-    structs_[type.name] = int(unit_.structs.size());
-    const size_t index = unit_.structs.size(), behind = at_;
+    const size_t index = unit_.structs.size();
+    structs_[type.name] = int(index);
     unit_.structs.push_back(std::move(type));
-    const bool inObject = std::exchange(inObject_, false);
-    for (const size_t begin : methods) {
-        at_ = begin;
-        try {
-            const Specifiers s = specifiers();
-            const bool typed = !(peek().kind == Tok::Identifier && peek(1).is("("));
-            Type result{};
-            handle_ = false;
-            if (typed) {
-                result.base = takeBase();
-                result = dimensions(result);
-            }
-            if (auto f = function(ofType(s), result, typed)) unit_.structs[index].methods.push_back(std::move(f));
-        } catch (const SyntaxError&) {
-            if (tooDeep_) throw;
-        }
-    }
-    inObject_ = inObject;
-    at_ = behind;
+    structureMethods(index, methods);
 }
 
 /// "public" and "private" of members: what is public is what others see, and the rest they do not; nothing else depends on it
@@ -177,7 +184,7 @@ void Parser::shaderObject() {
                 // A method without a type: void, or what it returns.
                 accept("public");
                 member = make(StmtKind::Declare, peek().place);
-                auto f = function({}, {}, false);
+                auto f = function({}, false);
                 if (!f) continue;
                 member->definition = f.get();
                 s.nested.push_back(std::move(f));

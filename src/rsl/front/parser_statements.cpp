@@ -50,97 +50,107 @@ StmtPtr Parser::statement() {
     return statementOnce();
 }
 
-StmtPtr Parser::statementOnce() {
+/// `if` or `while`.
+StmtPtr Parser::conditional(StmtKind kind) {
+    auto s = make(kind, peek().place);
+    const std::string word(take().text);
+    expect("(", ("after '" + word + "'").c_str());
+    s->condition = expression();
+    expect(")", "after the condition");
+    s->body.push_back(statement());
+    if (kind == StmtKind::If && accept("else")) s->elseBody = statement();
+    return s;
+}
+
+/// `break` or `continue`, with the number of loops.
+StmtPtr Parser::jump(StmtKind kind) {
+    auto s = make(kind, take().place);
+    if (peek().kind == Tok::Number) {
+        const auto n = primary();
+        if (n->number >= 1 && n->number <= 1000 && n->number == int(n->number)) s->levels = int(n->number);
+        else sources_.report(n->place, msg::kLoopLevels);
+    }
+    expectSemicolon(kind == StmtKind::Break ? "break" : "continue");
+    return s;
+}
+
+StmtPtr Parser::returnStatement() {
+    auto s = make(StmtKind::Return, take().place);
+    if (!at(";") && !at("}")) {
+        s->value = expression();
+        returnsValue_ = true;
+    }
+    expectSemicolon("return");
+    return s;
+}
+
+/// At a word: a declaration rather than a call, a conversion or an expression?
+bool Parser::atDeclaration() {
+    const std::string_view w = peek().text;
+    if (atStructWord() || w == "uniform" || w == "varying" || w == "extern" || w == "output") return true;
+    if ((w == "constant" || w == "const" || w == "public") && (atTypeName(1) || peek(1).is("uniform") || peek(1).is("varying")))
+        return true;
+    if (!atTypeName()) return false;
+    const Token& n = peek(1);
+    if (n.is("[") || n.is("=") || n.is(";") || n.is(",") || w == "void") return true;
+    const bool spaced = n.kind == Tok::String && peek(2).kind == Tok::Identifier && w != "string" &&
+                        (peek(3).is("=") || peek(3).is(";") || peek(3).is(",") || peek(3).is("["));
+    if (spaced) return true;
+    ++at_;
+    const bool name = atName();
+    const bool definition = name && (!peek(1).is("(") || functionFollows());
+    --at_;
+    return definition;
+}
+
+/// "vectr x = ..." reads as two names in a row: most likely a type with a slip.
+void Parser::refuseTypeName() {
     const Token& t = peek();
-    if (t.kind == Tok::Punct) {
-        if (t.text == "{") return block();
-        if (t.text == ";") {
-            auto s = make(StmtKind::Block, t.place);
-            take();
-            return s;
-        }
-    }
-    if (t.kind != Tok::Identifier) return effects();
+    const bool two = peek(1).kind == Tok::Identifier && !peek(1).lineStart &&
+                     (peek(2).is("=") || peek(2).is(";") || peek(2).is(",") || peek(2).is("["));
+    if (!two) return;
     const std::string_view w = t.text;
-    const bool call = peek(1).is("(");
-    if (w == "if") {
-        auto s = make(StmtKind::If, take().place);
-        expect("(", "after 'if'");
-        s->condition = expression();
-        expect(")", "after the condition");
-        s->body.push_back(statement());
-        if (accept("else")) s->elseBody = statement();
-        return s;
-    }
-    if (w == "else") fail(t.place, msg::kStrayElse);
-    if (w == "plugin" && plugin()) return make(StmtKind::Block, t.place);
-    if (w == "while") {
-        auto s = make(StmtKind::While, take().place);
-        expect("(", "after 'while'");
-        s->condition = expression();
-        expect(")", "after the condition");
-        s->body.push_back(statement());
-        return s;
-    }
+    const std::string near =
+        nearestName(w, {"float", "color", "point", "vector", "normal", "matrix", "string", "uniform", "varying"});
+    fail(t.place, msg::kNotAType(w),
+         near.empty() ? (w == "int" || w == "bool" ? "use float" : "") : "did you mean '" + near + "'?");
+}
+
+/// A statement that begins with a word of its own; null where it does not.
+StmtPtr Parser::keywordStatement() {
+    const std::string_view w = peek().text;
+    if (w == "if") return conditional(StmtKind::If);
+    if (w == "else") fail(peek().place, msg::kStrayElse);
+    if (w == "while") return conditional(StmtKind::While);
     if (w == "for") return forLoop();
     if (w == "do" && (peek(1).is("{") || (peek(1).kind == Tok::Identifier && !peek(1).lineStart))) return doLoop();
-    if (w == "break" || w == "continue") {
-        auto s = make(w == "break" ? StmtKind::Break : StmtKind::Continue, take().place);
-        if (peek().kind == Tok::Number) {
-            const auto n = primary();
-            if (n->number >= 1 && n->number <= 1000 && n->number == int(n->number)) s->levels = int(n->number);
-            else sources_.report(n->place, msg::kLoopLevels);
-        }
-        expectSemicolon(w == "break" ? "break" : "continue");
-        return s;
+    if (w == "break") return jump(StmtKind::Break);
+    if (w == "continue") return jump(StmtKind::Continue);
+    if (w == "return") return returnStatement();
+    if (!peek(1).is("(")) return nullptr;
+    if (w == "illuminance") return lightStatement(StmtKind::Illuminance);
+    if (w == "illuminate") return lightStatement(StmtKind::Illuminate);
+    if (w == "solar") return lightStatement(StmtKind::Solar);
+    if (w == "gather") return lightStatement(StmtKind::Gather);
+    return nullptr;
+}
+
+StmtPtr Parser::statementOnce() {
+    const Token& t = peek();
+    if (t.is("{")) return block();
+    if (t.is(";")) return make(StmtKind::Block, take().place);
+    if (t.kind != Tok::Identifier) return effects();
+    if (t.text == "plugin") {
+        const Place place = t.place;
+        if (plugin()) return make(StmtKind::Block, place);
     }
-    if (w == "return") {
-        auto s = make(StmtKind::Return, take().place);
-        if (!at(";") && !at("}")) {
-            s->value = expression();
-            returnsValue_ = true;
-        }
-        expectSemicolon("return");
-        return s;
-    }
-    if (call) {
-        if (w == "illuminance") return lightStatement(StmtKind::Illuminance);
-        if (w == "illuminate") return lightStatement(StmtKind::Illuminate);
-        if (w == "solar") return lightStatement(StmtKind::Solar);
-        if (w == "gather") return lightStatement(StmtKind::Gather);
-    }
-    if (atStructWord() || w == "uniform" || w == "varying" || w == "extern" || w == "output") return declaration();
-    if ((w == "constant" || w == "const" || w == "public") && (atTypeName(1) || peek(1).is("uniform") || peek(1).is("varying")))
-        return declaration();
-    if (atTypeName()) {
-        const Token& n = peek(1);
-        if (n.is("[") || n.is("=") || n.is(";") || n.is(",") || w == "void") return declaration();
-        const bool spaced = n.kind == Tok::String && peek(2).kind == Tok::Identifier && w != "string" &&
-                            (peek(3).is("=") || peek(3).is(";") || peek(3).is(",") || peek(3).is("["));
-        ++at_;
-        const bool name = atName();
-        --at_;
-        if (spaced) return declaration();
-        if (name) {
-            if (!peek(2).is("(")) return declaration();
-            ++at_;
-            const bool definition = functionFollows();
-            --at_;
-            if (definition) return declaration();
-        }
-    }
-    if (w == "struct" && peek(1).kind == Tok::Identifier && peek(2).is("{")) {
+    if (auto s = keywordStatement()) return s;
+    if (atDeclaration()) return declaration();
+    if (peek().text == "struct" && peek(1).kind == Tok::Identifier && peek(2).is("{")) {
         structure();
         return nullptr;
     }
-    // "vectr x = ..." reads as two names in a row: most likely a type with a slip.
-    if (peek(1).kind == Tok::Identifier && !peek(1).lineStart &&
-        (peek(2).is("=") || peek(2).is(";") || peek(2).is(",") || peek(2).is("["))) {
-        const std::string near =
-            nearestName(w, {"float", "color", "point", "vector", "normal", "matrix", "string", "uniform", "varying"});
-        fail(t.place, msg::kNotAType(w),
-             near.empty() ? (w == "int" || w == "bool" ? "use float" : "") : "did you mean '" + near + "'?");
-    }
+    refuseTypeName();
     return effects();
 }
 
@@ -163,12 +173,11 @@ StmtPtr Parser::declaration(bool member) {
     Specifiers spec = specifiers();
     if (!atTypeName()) failHere(msg::kExpectedType(shown()));
     Type type{takeBase(), 0};
-    spec.handle = handle_;
     const ExprPtr space = declaredSpace(type.base);
     ExprPtr shared;
     type = dimensions(type, member ? nullptr : &shared);
     if (functionFollows() || (type.base == Base::Void && peek(1).is("("))) {
-        auto f = function(spec, type, true);
+        auto f = function(type, true);
         if (!f) return nullptr;
         s->definition = f.get();
         owner_.nested->push_back(std::move(f));

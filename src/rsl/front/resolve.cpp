@@ -7,8 +7,8 @@
 namespace alpenglow::rsl::front {
 
 namespace {
-constexpr Base kAllBases[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector,
-                              Base::Normal, Base::Matrix, Base::String, Base::Bool};
+constexpr Base kAllBases[] = {Base::Float,  Base::Color,  Base::Point,  Base::Vector, Base::Normal,
+                              Base::Matrix, Base::String, Base::Shader, Base::Bool};
 } // namespace
 
 /// Type and children are known: `varying` follows from the children.
@@ -30,16 +30,16 @@ void Checker::convert(ExprPtr& e, Type to) {
     e = std::move(c);
 }
 
-void Checker::resolveTypes(ExprPtr& e, Type want, Handle handle) {
+void Checker::resolveTypes(ExprPtr& e, Type want) {
     const Info& info = infos_.at(e.get());
     if (info.any || want.base == Base::Void) {
         resolveCheapest(e);
         if (want.base != Base::Void) e->type = want;
         return;
     }
-    if (want.array != 0) return resolveArray(e, want, handle);
+    if (want.array != 0) return resolveArray(e, want);
     if (info.array.array || info.listLength >= 0) {
-        sources_.report(e->place, msg::kTypeMismatch(named(want, handle), describe(*e)));
+        sources_.report(e->place, msg::kTypeMismatch(toString(want), describe(*e)));
         e->type = want;
         return;
     }
@@ -52,10 +52,10 @@ void Checker::resolveTypes(ExprPtr& e, Type want, Handle handle) {
             best = b;
         }
     }
-    if (best == Base::Void || (want.base == Base::String && !alike(info.handle, handle))) {
+    if (best == Base::Void) {
         std::string hint;
         if (want.base == Base::Float && Type{cheapest(info), 0}.isTuple()) hint = componentHint(cheapest(info));
-        sources_.report(e->place, msg::kTypeMismatch(named(want, handle), describe(*e)), hint);
+        sources_.report(e->place, msg::kTypeMismatch(toString(want), describe(*e)), hint);
         e->type = want;
         return;
     }
@@ -149,7 +149,7 @@ void Checker::resolveCondition(ExprPtr& e) {
     e = std::move(test);
 }
 
-void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
+void Checker::resolveArray(ExprPtr& e, Type want) {
     const Info& info = infos_.at(e.get());
     if (info.any) {
         e->type = want;
@@ -161,7 +161,7 @@ void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
             sources_.report(e->args[size_t(length)]->place, msg::kTooManyElements(e->args.size(), length));
             e->args.resize(size_t(length));
         }
-        for (auto& a : e->args) resolveTypes(a, want.element(), handle);
+        for (auto& a : e->args) resolveTypes(a, want.element());
         // Elements that are not given are the last one again after "...", else zero: the list stays as short as it was written.
         for (const auto& a : e->args) e->height = std::max(e->height, a->height + 1);
         e->type = {want.base, length};
@@ -174,9 +174,8 @@ void Checker::resolveArray(ExprPtr& e, Type want, Handle handle) {
         return;
     }
     const Type have = info.array;
-    const bool mixed = want.base == Base::String && !alike(info.handle, handle);
-    if (have.base != want.base || mixed || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
-        sources_.report(e->place, msg::kTypeMismatchArray(named(want, handle), describe(*e)));
+    if (have.base != want.base || have.array == 0 || (want.array > 0 && have.array > 0 && have.array != want.array)) {
+        sources_.report(e->place, msg::kTypeMismatchArray(toString(want), describe(*e)));
         e->type = want;
         return;
     }
@@ -209,6 +208,75 @@ void Checker::resolveVariable(ExprPtr& e) {
     resolveAs(e, cheapest(info));
 }
 
+/// A member or a method of another shader. Its arguments stay as they are: what it takes is known when that is bound.
+void Checker::resolveHandle(ExprPtr& e, Base t) {
+    resolveTypes(e->args[0], {Base::Shader, 0});
+    for (size_t i = 1; i < e->args.size(); ++i) {
+        if (isVariable(*e->args[i])) resolveVariable(e->args[i]);
+        else resolveCheapest(e->args[i]);
+    }
+    e->type = {t, 0};
+    e->varying = true;
+    if (function_) varyingFunctions_.insert(function_);
+    program_.handles = true;
+}
+
+void Checker::resolveCast(ExprPtr& e, Base t) {
+    if (e->space) resolveTypes(e->space, {Base::String, 0});
+    const Info& a = infos_.at(e->args[0].get());
+    Base best = t;
+    int cost = kNever;
+    for (Base b : kAllBases) {
+        const int c = a.cost[int(b)] + castCost(b, t);
+        if (c < cost) {
+            cost = c;
+            best = b;
+        }
+    }
+    resolveAs(e->args[0], best);
+    becomesTuple(a, *e->args[0], t);
+    Expr& inner = *e->args[0];
+    if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space)
+        inner.space = std::move(e->space);
+    if (e->space || inner.type != Type{t, 0}) {
+        e->type = {t, 0};
+        return finish(*e);
+    }
+    // Nothing to convert: the word chose the reading.
+    ExprPtr value = std::move(e->args[0]);
+    finish(*value);
+    if (value->kind == ExprKind::ShadeopCall || value->kind == ExprKind::FunctionCall || value->kind == ExprKind::Variable)
+        value->varying = value->varying || inner.varying;
+    e = std::move(value);
+}
+
+/// What is varying where its parts are.
+void Checker::resolveParts(ExprPtr& e, Base t) {
+    switch (e->kind) {
+    case ExprKind::Unary:
+        if (e->op == ExprOp::Not) resolveCondition(e->args[0]);
+        else resolveTypes(e->args[0], {t, 0});
+        break;
+    case ExprKind::Sequence:
+        for (size_t i = 0; i + 1 < e->args.size(); ++i) resolveCheapest(e->args[i]);
+        resolveAs(e->args.back(), t);
+        e->type = e->args.back()->type;
+        return finish(*e);
+    case ExprKind::Conditional:
+        resolveCondition(e->args[0]);
+        // Truth values are no values: 0 and 1 where they meet as results.
+        if (t == Base::Bool) t = Base::Float;
+        resolveTypes(e->args[1], {t, 0});
+        resolveTypes(e->args[2], {t, 0});
+        break;
+    default: // tuples
+        for (auto& a : e->args) resolveTypes(a, {Base::Float, 0});
+        break;
+    }
+    e->type = {t, 0};
+    finish(*e);
+}
+
 void Checker::resolveAs(ExprPtr& e, Base t) {
     const Info& info = infos_.at(e.get());
     if (info.any) {
@@ -231,90 +299,30 @@ void Checker::resolveAs(ExprPtr& e, Base t) {
         resolveIndexed(e->args[0]);
         resolveTypes(e->args[1], {Base::Float, 0});
         e->type = {t, 0};
-        if (e->args[0]->kind == ExprKind::Member) {
-            e->varying = true;
-            return;
-        }
-        break;
-    case ExprKind::Unary:
-        if (e->op == ExprOp::Not) resolveCondition(e->args[0]);
-        else resolveTypes(e->args[0], {t, 0});
-        e->type = {t, 0};
-        break;
-    case ExprKind::Sequence:
-        for (size_t i = 0; i + 1 < e->args.size(); ++i) resolveCheapest(e->args[i]);
-        resolveAs(e->args.back(), t);
-        e->type = e->args.back()->type;
-        break;
+        finish(*e);
+        if (e->args[0]->kind == ExprKind::Member) e->varying = true;
+        return;
     case ExprKind::Member:
     case ExprKind::Method:
-        resolveTypes(e->args[0], {Base::String, 0}, Handle::Shader);
-        for (size_t i = 1; i < e->args.size(); ++i) {
-            if (isVariable(*e->args[i])) resolveVariable(e->args[i]);
-            else resolveCheapest(e->args[i]);
-        }
-        e->type = {t, 0};
-        e->varying = true;
-        if (function_) varyingFunctions_.insert(function_);
-        program_.handles = true;
-        return;
+        return resolveHandle(e, t);
     case ExprKind::Binary:
-        resolveBinary(e, t);
-        return;
+        return resolveBinary(e, t);
     case ExprKind::Assign:
-        resolveAssign(e);
-        return;
+        return resolveAssign(e);
+    case ExprKind::Cast:
+        return resolveCast(e, t);
+    case ExprKind::ShadeopCall:
+        return resolveCall(e, {t, 0});
+    case ExprKind::Unary:
+    case ExprKind::Sequence:
     case ExprKind::Conditional:
-        resolveCondition(e->args[0]);
-        // Truth values are no values: 0 and 1 where they meet as results.
-        if (t == Base::Bool) t = Base::Float;
-        resolveTypes(e->args[1], {t, 0}, Handle::Either);
-        resolveTypes(e->args[2], {t, 0}, Handle::Either);
-        e->type = {t, 0};
-        break;
     case ExprKind::Tuple:
     case ExprKind::MatrixTuple:
-        for (auto& a : e->args) resolveTypes(a, {Base::Float, 0});
-        e->type = {t, 0};
-        break;
-    case ExprKind::Cast: {
-        if (e->space) resolveTypes(e->space, {Base::String, 0});
-        const Info& a = infos_.at(e->args[0].get());
-        Base best = t;
-        int cost = kNever;
-        for (Base b : kAllBases) {
-            const int c = a.cost[int(b)] + castCost(b, t);
-            if (c < cost) {
-                cost = c;
-                best = b;
-            }
-        }
-        resolveAs(e->args[0], best);
-        becomesTuple(a, *e->args[0], t);
-        Expr& inner = *e->args[0];
-        if (e->space && (inner.kind == ExprKind::Tuple || inner.kind == ExprKind::MatrixTuple) && !inner.space)
-            inner.space = std::move(e->space);
-        if (!e->space && inner.type == Type{t, 0}) {
-            // Nothing to convert: the word chose the reading.
-            ExprPtr value = std::move(e->args[0]);
-            finish(*value);
-            if (value->kind == ExprKind::ShadeopCall || value->kind == ExprKind::FunctionCall ||
-                value->kind == ExprKind::Variable)
-                value->varying = value->varying || inner.varying;
-            e = std::move(value);
-            return;
-        }
-        e->type = {t, 0};
-        break;
-    }
-    case ExprKind::ShadeopCall:
-        resolveCall(e, {t, 0});
-        return;
+        return resolveParts(e, t);
     case ExprKind::ArrayList:
     case ExprKind::FunctionCall:
         return;
     }
-    finish(*e);
 }
 
 void Checker::resolveBinary(ExprPtr& e, Base t) {
@@ -388,7 +396,7 @@ void Checker::resolveAssign(ExprPtr& e) {
         e->op = ExprOp::Assign;
         e->text = "+=";
     } else if (e->op == ExprOp::Assign || target.array != 0) {
-        resolveTypes(e->args[1], target, Handle::Either); // infer compared them
+        resolveTypes(e->args[1], target);
     } else {
         const Info& l = infos_.at(e->args[0].get());
         const Info& r = infos_.at(e->args[1].get());

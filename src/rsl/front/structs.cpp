@@ -181,7 +181,6 @@ std::vector<Symbol*> Lowering::split(const Symbol& s) {
     if (!arrayPossible(s.type, s.place)) return all;
     for (const Leaf& l : leaves(s.type)) {
         Symbol* n = newSymbol(s.name + l.path, l.type, s.storage == Storage::Unspecified ? l.storage : s.storage, s.place);
-        n->handle = l.member->handle;
         n->origin = s.origin;
         n->output = s.output;
         n->isExtern = s.isExtern;
@@ -198,7 +197,6 @@ std::string Lowering::temporary(Type type, Place place, Storage storage) {
     if (isStruct(type)) {
         for (const Leaf& l : leaves(type)) {
             d->declarators.push_back({newSymbol(name + l.path, l.type, storage, place), nullptr});
-            d->declarators.back().symbol->handle = l.member->handle;
         }
     } else {
         d->declarators.push_back({newSymbol(name, type, storage, place), nullptr});
@@ -217,7 +215,7 @@ void Lowering::spill(List& values, Type type, List& pre, Place place) {
 }
 
 ExprPtr Lowering::zero(const Leaf& l, Place place) {
-    const bool handle = l.member && l.member->handle;
+    const bool handle = l.type.base == Base::Shader;
     ExprPtr z = node(handle ? ExprKind::Variable : l.type.base == Base::String ? ExprKind::String : ExprKind::Number, place);
     if (handle) z->text = "null";
     if (l.type.array == 0) return z;

@@ -11,7 +11,6 @@ struct Unit;
 struct StructMember {
     std::string name;
     Type type;
-    bool handle = false; ///< of type `shader`
     Storage storage = Storage::Unspecified;
     ExprPtr init; ///< null: zero
     Place place;

@@ -142,7 +142,7 @@ void Lowering::elements(ExprPtr array, Type type, List& pre, List& out) {
         for (int k = 0; k < n; ++k) {
             if (k < int(given.size())) out.push_back(std::move(given[size_t(k)]));
             else if (last) out.push_back(clone(*last));
-            else out.push_back(type.base == Base::String ? node(ExprKind::String, place) : number(0, place));
+            else out.push_back(isStringLike(type.base) ? node(ExprKind::String, place) : number(0, place));
         }
         return;
     }

@@ -98,6 +98,9 @@ private:
     void construct(Type type, Expr& e, List& pre, List& out);
     /// The parts of an expression that is a structure; what must happen before goes to `pre`.
     void flatten(ExprPtr e, List& pre, List& out);
+    void flattenElement(Expr& e, Type type, List& pre, List& out);
+    void flattenConditional(Expr& e, Type type, List& pre, List& out);
+    void flattenCall(ExprPtr e, Type type, List& pre, List& out);
     /// The parts of a member.
     void pick(Expr& e, List& pre, List& out);
     /// left = right, both structures.

@@ -2,6 +2,8 @@
 // methods in its body mean those of this structure, unless a parameter or a local variable hides them.
 #include "rsl/front/clone.h"
 #include "rsl/front/structs_lowering.h"
+#include "rsl/front/visit.h"
+#include "rsl/front/writes.h"
 #include <set>
 #include <utility>
 
@@ -59,11 +61,7 @@ private:
     /// May a call of this function change an argument?
     bool putsOut(const std::string& name) const {
         const Shadeop* op = findShadeop(name);
-        if (!op) return true; // the text's own, or a plug-in's
-        for (const Signature& s : op->signatures)
-            for (const Parameter& p : s.parameters)
-                if (p.output) return true;
-        return false;
+        return !op || writesAny(*op); // none: the text's own, or a plug-in's
     }
 
     void expression(ExprPtr& e) {
@@ -83,9 +81,7 @@ private:
             for (auto& a : e->args) adopt(*m, std::move(a));
             e = std::move(m);
         }
-        for (auto& a : e->args) expression(a);
-        for (ExprPtr* x : {&e->space, &e->channel}) expression(*x);
-        for (auto& p : e->pairs) expression(p.value);
+        eachSlot(*e, [&](ExprPtr& x) { expression(x); });
         for (const auto& a : e->args)
             if (a) e->height = std::max(e->height, a->height + 1);
         const bool call = e->kind == ExprKind::ShadeopCall;
@@ -104,19 +100,16 @@ private:
         if (!s) return;
         const bool block = s->kind == StmtKind::Block;
         if (block) hidden_.emplace_back();
-        for (ExprPtr* e : {&s->condition, &s->init, &s->step, &s->value, &s->category}) expression(*e);
-        for (auto& e : s->exprs) expression(e);
-        for (auto& p : s->pairs) expression(p.value);
         for (auto& d : s->declarators) {
             expression(d.init);
             hidden_.back().insert(d.symbol->name);
         }
+        if (s->declarators.empty()) eachSlot(*s, [&](ExprPtr& x) { expression(x); });
         if (s->definition) {
             hidden_.back().insert(s->definition->name);
             run(*s->definition);
         }
-        for (auto& b : s->body) statement(b);
-        statement(s->elseBody);
+        eachBody(*s, [&](StmtPtr& b) { statement(b); });
         if (block) hidden_.pop_back();
     }
 

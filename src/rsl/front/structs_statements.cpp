@@ -1,6 +1,7 @@
 // Statements, functions and shaders with structures in them.
 #include "rsl/front/clone.h"
 #include "rsl/front/structs_lowering.h"
+#include "rsl/front/visit.h"
 #include <utility>
 
 namespace alpenglow::rsl::front {
@@ -122,10 +123,8 @@ void Lowering::statement(StmtPtr s, std::vector<StmtPtr>& target) {
         break;
     }
     default:
-        for (ExprPtr* e : {&s->condition, &s->init, &s->step, &s->value, &s->category}) rewrite(*e);
         if (s->kind == StmtKind::Gather) gatherRegion(*s);
-        for (auto& e : s->exprs) rewrite(e);
-        for (auto& p : s->pairs) rewrite(p.value);
+        eachSlot(*s, [&](ExprPtr& e) { rewrite(e); });
         for (auto& b : s->body) body(b);
         body(s->elseBody);
         out.push_back(std::move(s));
@@ -162,7 +161,6 @@ void Lowering::function(Function& f) {
     if (isStruct(f.result)) {
         for (const Leaf& l : leaves(f.result)) {
             Symbol* r = newSymbol("(result)" + l.path, l.type, l.storage, f.place);
-            r->handle = l.member->handle;
             r->origin = Symbol::Origin::FunctionParameter;
             r->output = true;
             results_.push_back(r);

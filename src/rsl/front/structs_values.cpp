@@ -57,6 +57,107 @@ void Lowering::construct(Type type, Expr& e, List& pre, List& out) {
     }
 }
 
+/// The parts of an element of an array of structures.
+void Lowering::flattenElement(Expr& e, Type type, List& pre, List& out) {
+    const Place place = e.place;
+    List base;
+    const int length = typeOf(*e.args[0]).array;
+    const auto inner = leaves(type);
+    flatten(std::move(e.args[0]), pre, base);
+    ExprPtr index = std::move(e.args[1]);
+    rewrite(index);
+    if (base.size() > 1 && index->kind != ExprKind::Number && index->kind != ExprKind::Variable) {
+        const std::string t = temporary({Base::Float, 0}, place); // computed once
+        pre.push_back(assign(variable(t, place), std::move(index), place));
+        index = variable(t, place);
+    }
+    for (size_t n = 0; n < base.size(); ++n) {
+        ExprPtr& b = base[n];
+        const int each = n < inner.size() ? inner[n].type.array : 0;
+        if (each || isSlice(*b)) {
+            ExprPtr at = bounded(clone(*index), length, *b, std::max(1, each));
+            out.push_back(partAt(std::move(b), std::move(at), each));
+            continue;
+        }
+        auto i = node(ExprKind::Index, place);
+        adopt(*i, std::move(b));
+        adopt(*i, clone(*index));
+        out.push_back(std::move(i));
+    }
+}
+
+static ExprPtr numberNode(double v, Place place) {
+    auto n = node(ExprKind::Number, place);
+    n->number = v;
+    return n;
+}
+
+static ExprPtr choose(ExprPtr condition, ExprPtr yes, ExprPtr no, Place place) {
+    auto c = node(ExprKind::Conditional, place);
+    adopt(*c, std::move(condition));
+    adopt(*c, std::move(yes));
+    adopt(*c, std::move(no));
+    return c;
+}
+
+/// condition ? a : b, both structures: the condition is computed once, and each part chooses by it.
+void Lowering::flattenConditional(Expr& e, Type type, List& pre, List& out) {
+    const Place place = e.place;
+    const std::string t = temporary({Base::Float, 0}, place);
+    rewrite(e.args[0]);
+    pre.push_back(
+        assign(variable(t, place), choose(std::move(e.args[0]), numberNode(1, place), numberNode(0, place), place), place));
+    List yes, no, yesFirst, noFirst;
+    valueOf(std::move(e.args[1]), type, yesFirst, yes);
+    valueOf(std::move(e.args[2]), type, noFirst, no);
+    const auto all = leaves(type);
+    if (!yesFirst.empty() || !noFirst.empty()) {
+        // What a side does happens only where it is chosen: each stores its parts, and the number behind them is not used.
+        const std::string chosen = temporary(type, place);
+        const auto side = [&](List& first, List& parts) {
+            for (size_t i = 0; i < all.size() && i < parts.size(); ++i)
+                first.push_back(assign(variable(chosen + all[i].path, place), whole(std::move(parts[i])), place));
+            ExprPtr done = node(ExprKind::Number, place);
+            sequence(done, std::move(first));
+            return done;
+        };
+        ExprPtr first = side(yesFirst, yes), second = side(noFirst, no);
+        pre.push_back(assign(variable(t, place), choose(variable(t, place), std::move(first), std::move(second), place), place));
+        for (const Leaf& l : all) out.push_back(variable(chosen + l.path, place));
+        return;
+    }
+    const auto either = [&](ExprPtr a, ExprPtr b) { return choose(variable(t, place), std::move(a), std::move(b), place); };
+    for (size_t i = 0; i < yes.size() && i < no.size(); ++i) {
+        if (i >= all.size() || all[i].type.array <= 0) {
+            out.push_back(either(std::move(yes[i]), std::move(no[i])));
+            continue;
+        }
+        List first, second; // arrays one element after the other
+        elements(std::move(yes[i]), all[i].type, pre, first);
+        elements(std::move(no[i]), all[i].type, pre, second);
+        out.push_back(node(ExprKind::ArrayList, place));
+        for (size_t k = 0; k < first.size(); ++k) adopt(*out.back(), either(std::move(first[k]), std::move(second[k])));
+    }
+}
+
+/// A call that gives a structure: it fills variables, which are its last arguments.
+void Lowering::flattenCall(ExprPtr e, Type type, List& pre, List& out) {
+    if (structNamed(e->text) >= 0) return construct(type, *e, pre, out);
+    if (e->text == "pop") return popLast(*e, type, pre, out);
+    const Place place = e->place;
+    const std::string t = temporary(type, place);
+    List after;
+    arguments(*e, pre, after);
+    const size_t first = e->args.size();
+    for (const Leaf& l : leaves(type)) {
+        adopt(*e, variable(t + l.path, place));
+        out.push_back(variable(t + l.path, place));
+    }
+    if (first < e->args.size()) e->args[first]->whole = wholeOf(type, e->args.size() - first, true);
+    pre.push_back(std::move(e));
+    for (auto& a : after) pre.push_back(std::move(a));
+}
+
 /// The parts of an expression that is a structure; what must happen before goes to `pre`.
 void Lowering::flatten(ExprPtr e, List& pre, List& out) {
     const Type type = typeOf(*e);
@@ -70,109 +171,18 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
     case ExprKind::Variable:
         for (const Leaf& l : leaves(type)) out.push_back(variable(e->text + l.path, place));
         return;
-    case ExprKind::Index: {
-        List base;
-        const int length = typeOf(*e->args[0]).array;
-        const auto inner = leaves(type);
-        flatten(std::move(e->args[0]), pre, base);
-        ExprPtr index = std::move(e->args[1]);
-        rewrite(index);
-        if (base.size() > 1 && index->kind != ExprKind::Number && index->kind != ExprKind::Variable) {
-            const std::string t = temporary({Base::Float, 0}, place); // computed once
-            pre.push_back(assign(variable(t, place), std::move(index), place));
-            index = variable(t, place);
-        }
-        for (size_t n = 0; n < base.size(); ++n) {
-            ExprPtr& b = base[n];
-            const int each = n < inner.size() ? inner[n].type.array : 0;
-            if (each || isSlice(*b)) {
-                ExprPtr at = bounded(clone(*index), length, *b, std::max(1, each));
-                out.push_back(partAt(std::move(b), std::move(at), each));
-                continue;
-            }
-            auto i = node(ExprKind::Index, place);
-            adopt(*i, std::move(b));
-            adopt(*i, clone(*index));
-            out.push_back(std::move(i));
-        }
-        return;
-    }
+    case ExprKind::Index:
+        return flattenElement(*e, type, pre, out);
     case ExprKind::Member:
         return pick(*e, pre, out);
     case ExprKind::Cast:
         return flatten(std::move(e->args[0]), pre, out);
-    case ExprKind::Conditional: {
-        const std::string t = temporary({Base::Float, 0}, place);
-        auto choose = node(ExprKind::Conditional, place);
-        rewrite(e->args[0]);
-        adopt(*choose, std::move(e->args[0]));
-        for (double v : {1.0, 0.0}) {
-            auto n = node(ExprKind::Number, place);
-            n->number = v;
-            adopt(*choose, std::move(n));
-        }
-        pre.push_back(assign(variable(t, place), std::move(choose), place));
-        List yes, no, yesFirst, noFirst;
-        valueOf(std::move(e->args[1]), type, yesFirst, yes);
-        valueOf(std::move(e->args[2]), type, noFirst, no);
-        if (!yesFirst.empty() || !noFirst.empty()) {
-            // What a side does happens only where it is chosen: each stores its parts, and the number behind them is not used.
-            const std::string chosen = temporary(type, place);
-            const auto side = [&](List& first, List& parts) {
-                const auto all = leaves(type);
-                for (size_t i = 0; i < all.size() && i < parts.size(); ++i)
-                    first.push_back(assign(variable(chosen + all[i].path, place), whole(std::move(parts[i])), place));
-                ExprPtr done = node(ExprKind::Number, place);
-                sequence(done, std::move(first));
-                return done;
-            };
-            auto c = node(ExprKind::Conditional, place);
-            adopt(*c, variable(t, place));
-            adopt(*c, side(yesFirst, yes));
-            adopt(*c, side(noFirst, no));
-            pre.push_back(assign(variable(t, place), std::move(c), place));
-            for (const Leaf& l : leaves(type)) out.push_back(variable(chosen + l.path, place));
-            return;
-        }
-        const auto either = [&](ExprPtr a, ExprPtr b) {
-            auto c = node(ExprKind::Conditional, place);
-            adopt(*c, variable(t, place));
-            adopt(*c, std::move(a));
-            adopt(*c, std::move(b));
-            return c;
-        };
-        const auto all = leaves(type);
-        for (size_t i = 0; i < yes.size() && i < no.size(); ++i) {
-            if (i >= all.size() || all[i].type.array <= 0) {
-                out.push_back(either(std::move(yes[i]), std::move(no[i])));
-                continue;
-            }
-            List first, second; // arrays one element after the other
-            elements(std::move(yes[i]), all[i].type, pre, first);
-            elements(std::move(no[i]), all[i].type, pre, second);
-            out.push_back(node(ExprKind::ArrayList, place));
-            for (size_t k = 0; k < first.size(); ++k) adopt(*out.back(), either(std::move(first[k]), std::move(second[k])));
-        }
-        return;
-    }
+    case ExprKind::Conditional:
+        return flattenConditional(*e, type, pre, out);
     case ExprKind::Assign:
         return assignTo(*e, pre, &out);
-    case ExprKind::ShadeopCall: {
-        if (structNamed(e->text) >= 0) return construct(type, *e, pre, out);
-        if (e->text == "pop") return popLast(*e, type, pre, out);
-        const std::string t = temporary(type, place);
-        List after;
-        arguments(*e, pre, after);
-        const size_t first = e->args.size();
-        for (const Leaf& l : leaves(type)) {
-            adopt(*e, variable(t + l.path, place));
-            out.push_back(variable(t + l.path, place));
-        }
-        if (first < e->args.size()) e->args[first]->whole = wholeOf(type, e->args.size() - first, true);
-        pre.push_back(std::move(e));
-        for (auto& a : after) pre.push_back(std::move(a));
-        return;
-    }
+    case ExprKind::ShadeopCall:
+        return flattenCall(std::move(e), type, pre, out);
     default:
         for (size_t i = 0; i < leaves(type).size(); ++i) out.push_back(variable("", place));
     }

@@ -2,10 +2,19 @@
 // values like those of variables: each point has its own. What does not fit into the storage is kept by whoever runs the kernel
 // (spilledarrays.h), and reached by services; such elements have no derivatives.
 #include "base/limits.h"
+#include "rsl/front/visit.h"
+#include "rsl/front/writes.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
 namespace alpenglow::rsl::ir {
+
+/// The length where it is known; of an array that changes its length, where it is not, that of its storage.
+int Builder::arrayLength(const Inst* a) const {
+    if (const Lengths* l = lengths(a))
+        if (const Inst* n = value(l->length); n && isConst(n)) return static_cast<int>(n->numbers[0]);
+    return a->op == Op::ArrayInput ? k_.inputs[static_cast<size_t>(a->index)].array : a->index;
+}
 
 namespace {
 
@@ -50,50 +59,25 @@ int Builder::largestResize() {
         if (e.kind != ExprKind::Number) n = std::min(n, static_cast<double>(limits::kResizableArray) * 16);
         largestResize_ = std::max(largestResize_, static_cast<int>(std::clamp(n, 0.0, 1e6)));
     };
-    const auto visitExpr = [&](auto&& self, const Expr& e) -> void {
-        const auto grows = [&](const Expr& a) {
-            if (a.kind == ExprKind::Variable && a.symbol) grown_.insert(a.symbol);
-        };
+    const auto grows = [&](const Expr& a) {
+        if (a.kind == ExprKind::Variable && a.symbol) grown_.insert(a.symbol);
+    };
+    const auto expression = [&](const Expr& e) {
         if (e.kind == ExprKind::Assign) grows(*e.args[0]);
-        for (size_t n = 0; n < e.args.size(); ++n) {
-            const bool output = e.signature
-                                    ? n < e.signature->parameters.size() && e.signature->parameters[n].output
-                                    : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
-            const bool other = e.kind == ExprKind::Method; // its parameters are not known yet
-            if ((output || other) && e.args[n]) grows(*e.args[n]);
-        }
+        for (size_t n = 0; n < e.args.size(); ++n)
+            if (e.args[n] && front::writesArgument(e, n) != front::Writes::No) grows(*e.args[n]);
         if (e.shadeop && e.shadeop->name == "push") unbound_ = true;
         const bool sizes = e.shadeop && (e.shadeop->name == "resize" || e.shadeop->name == "reserve") && e.args.size() == 2;
         if (sizes) wanted(*e.args[1]);
         if (sizes) unbound_ |= e.args[1]->kind != ExprKind::Number || e.args[1]->number > limits::kShaderArray;
-        for (const ExprPtr& a : e.args)
-            if (a) self(self, *a);
-        for (const NamedArg& p : e.pairs)
-            if (p.value) self(self, *p.value);
     };
-    const auto visit = [&](auto&& self, const Stmt& s) -> void {
-        for (const StmtPtr& b : s.body)
-            if (b) self(self, *b);
-        if (s.elseBody) self(self, *s.elseBody);
-        for (const ExprPtr* p : {&s.condition, &s.init, &s.step, &s.value})
-            if (*p) visitExpr(visitExpr, **p);
-        for (const Stmt::Declarator& d : s.declarators)
-            if (d.init) visitExpr(visitExpr, *d.init);
+    const auto body = [&](const Stmt& s) { front::everyExpr(s, expression); };
+    const auto program = [&](const Program& p, const Shader& s) {
+        front::everyBody(s, body);
+        for (const auto& f : p.functions) front::everyFunctionBody(*f, body);
     };
-    const auto functions = [&](auto&& self, const std::vector<std::unique_ptr<Function>>& list) -> void {
-        for (const auto& f : list) {
-            if (f->body) visit(visit, *f->body);
-            self(self, f->nested);
-        }
-    };
-    if (shader_.body) visit(visit, *shader_.body);
-    functions(functions, shader_.nested);
-    functions(functions, program_.functions);
-    for (const CoShader& c : options_.coShaders) {
-        if (c.shader->body) visit(visit, *c.shader->body);
-        functions(functions, c.shader->nested);
-        functions(functions, c.program->functions);
-    }
+    program(program_, shader_);
+    for (const CoShader& c : options_.coShaders) program(*c.program, *c.shader);
     return largestResize_;
 }
 
@@ -102,44 +86,6 @@ bool Builder::grows(const Stmt::Declarator& d) {
     largestResize();
     const bool measured = d.init && d.init->text != "{}" && (d.init->kind == ExprKind::ArrayList || d.init->type.array > 0);
     return d.symbol->resizable && (grown_.count(d.symbol) || !measured);
-}
-
-/// Builds what is done with each of `count` elements: one after the other, so that short arrays become values; a loop where there
-/// are many, as code for each would take minutes to compile.
-void Builder::everyElement(int count, const std::function<void(Inst* at)>& each) {
-    constexpr int kOneByOne = 256;
-    if (count <= kOneByOne) {
-        for (int i = 0; i < count; ++i) each(constant(static_cast<float>(i)));
-        return;
-    }
-    countLoop(constant(0), constant(static_cast<float>(count)), each);
-}
-
-/// A loop over the numbers from `first` to `end`, exclusive. `each` must assign no variable.
-void Builder::countLoop(Inst* first, Inst* end, const std::function<void(Inst* at)>& each) {
-    Inst* inst = k_.make(Op::Loop, Kind::None);
-    inst->place = keptPlace(place_);
-    inst->args = {first};
-    inst->results = {Kind::Float};
-    inst->regions.resize(2);
-    Region* const saved = region_;
-    const size_t mark = log_.size();
-    const auto enter = [&](Region& r) {
-        region_ = &r;
-        r.params.push_back(k_.make(Op::RegionParam, Kind::Float));
-        return r.params.back();
-    };
-    Inst* at = enter(inst->regions[0]);
-    inst->regions[0].yields.push_back(emit(Op::Less, Kind::Bool, {at, end}));
-    at = enter(inst->regions[1]);
-    each(at);
-    inst->regions[1].yields.push_back(emit(Op::Add, Kind::Float, {at, constant(1)}));
-    region_ = saved;
-    while (log_.size() > mark) {
-        env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
-        log_.pop_back();
-    }
-    region_->body.push_back(inst);
 }
 
 /// Storage for an array that begins with `length` elements.
@@ -386,7 +332,7 @@ Inst* Builder::resizing(const Expr& e) {
 void Builder::addLengths(std::set<int>& slots) const {
     std::set<int> more;
     for (int n : slots)
-        if (const Inst* v = env_[static_cast<size_t>(n)])
+        if (const Inst* v = value(n))
             if (const Lengths* l = lengths(v)) more.insert({l->length, l->reserved});
     slots.insert(more.begin(), more.end());
 }

@@ -220,32 +220,9 @@ Inst* Builder::random(const Expr& e) {
     const Kind k = kindOf(e.signature ? e.signature->result : e.type);
     s.resultKinds = {k};
     s.resultNames = {""};
-    s.resultType = e.type;
+    s.resultType = storedType(e.type);
     s.shadeop = e.shadeop;
     return call(Op::Service, std::move(s), {})[0];
-}
-
-Inst* Builder::transformCall(const Expr& e) {
-    const std::string& name = e.shadeop->name;
-    Base base = e.args.back()->type.base;
-    if (name == "vtransform") base = Base::Vector;
-    else if (name == "ntransform") base = Base::Normal;
-    else if (name == "ptransform") base = Base::Point;
-    std::vector<Inst*> a;
-    for (const ExprPtr& x : e.args) a.push_back(expr(*x));
-    place_ = e.place;
-    Inst* v = coerce(a.back(), base == Base::Matrix ? Kind::Matrix : Kind::Triple);
-    Inst* from = a.size() == 3 ? a[0] : leaves_.string("current");
-    Inst* to = a[a.size() - 2];
-    const auto between = [&](Inst* f, Inst* t) {
-        if (f->op == Op::ConstString && t->op == Op::ConstString) return toSpace(f->text, t->text, v, base, e.place);
-        return dynamicSpace(name == "ptransform" ? "transform" : name.c_str(), f, t, v, base);
-    };
-    if (to->kind == Kind::Matrix) {
-        v = between(from, leaves_.string("current"));
-        return transformBy(to, v, base);
-    }
-    return between(from, to);
 }
 
 Inst* Builder::special(const Expr& e) {
@@ -297,7 +274,7 @@ Inst* Builder::isOutput(const Expr& e) {
         Inst* at = expr(*a.args[1], Kind::Float);
         name = a.args[0]->symbol->name + (isConst(at) ? "[" + indexText(at->numbers[0]) + "]" : "");
     }
-    Inst* const text = name.empty() && a.type == Type{Base::String, 0} ? expr(a) : nullptr;
+    Inst* const text = name.empty() && storedType(a.type) == Type{Base::String, 0} ? expr(a) : nullptr;
     if (text && text->op != Op::ConstString) { // one of those that are asked for
         std::set<std::string> all;
         for (const std::string& o : options_.outputs) all.insert({o, o.substr(0, o.find('['))});

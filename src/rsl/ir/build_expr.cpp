@@ -2,44 +2,10 @@
 #include "rsl/ir/builder.h"
 #include "rsl/passes/zerodivision.h"
 #include <algorithm>
-#include <cctype>
 
 namespace alpenglow::rsl::ir {
 
 Inst* Builder::condition(const Expr& e) { return expr(e, Kind::Bool); }
-
-Inst* Builder::dot(Inst* a, Inst* b) {
-    Inst* p = emit(Op::Mul, Kind::Triple, {a, b});
-    Inst* xy = emit(Op::Add, Kind::Float, {emit(Op::Extract, Kind::Float, {p}, 0), emit(Op::Extract, Kind::Float, {p}, 1)});
-    return emit(Op::Add, Kind::Float, {xy, emit(Op::Extract, Kind::Float, {p}, 2)});
-}
-
-Inst* Builder::cross(Inst* a, Inst* b) {
-    std::vector<Inst*> c;
-    for (int n = 0; n < 3; ++n) {
-        const int i = (n + 1) % 3, j = (n + 2) % 3;
-        const auto product = [&](int p, int q) {
-            return emit(Op::Mul, Kind::Float, {emit(Op::Extract, Kind::Float, {a}, p), emit(Op::Extract, Kind::Float, {b}, q)});
-        };
-        c.push_back(emit(Op::Sub, Kind::Float, {product(i, j), product(j, i)}));
-    }
-    return emit(Op::Triple, Kind::Triple, c);
-}
-
-Inst* Builder::multiply(Inst* a, Inst* b) {
-    std::vector<Inst*> m;
-    for (int r = 0; r < 4; ++r)
-        for (int c = 0; c < 4; ++c) {
-            Inst* sum = nullptr;
-            for (int n = 0; n < 4; ++n) {
-                Inst* p = emit(Op::Mul, Kind::Float,
-                               {emit(Op::Extract, Kind::Float, {a}, r * 4 + n), emit(Op::Extract, Kind::Float, {b}, n * 4 + c)});
-                sum = sum ? emit(Op::Add, Kind::Float, {sum, p}) : p;
-            }
-            m.push_back(sum);
-        }
-    return emit(Op::MatrixOf, Kind::Matrix, m);
-}
 
 /// && and ||. What the first operand decides alone leaves the second undone, as in C; one that only gives a value is computed all
 /// the same where the points differ, which nobody sees.
@@ -93,7 +59,7 @@ Inst* Builder::binary(const Expr& e, Inst* a, Inst* b) {
         return k == Kind::Matrix ? multiply(a, b) : emit(Op::Mul, k, {a, b});
     case ExprOp::Div:
         return k == Kind::Matrix ? multiply(a, runtime1("al_inverse", {b}, Kind::Matrix))
-                                 : emit(Op::Div, k, {a, b}, ownText_ ? 0 : kWrittenDivision);
+                                 : emit(Op::Div, k, {a, b}, ownText_ ? 0 : passes::kWrittenDivision);
     case ExprOp::Dot:
         return dot(coerce(a, Kind::Triple), coerce(b, Kind::Triple));
     case ExprOp::Cross:
@@ -113,7 +79,7 @@ Inst* Builder::binary(const Expr& e, Inst* a, Inst* b) {
 Inst* Builder::array(const Expr& e) {
     if (e.kind == ExprKind::Variable && e.symbol) {
         const int n = slot(e.symbol);
-        Inst*& v = env_[static_cast<size_t>(n)];
+        Inst*& v = value(n);
         if (!v) v = get(n);
         return v;
     }
@@ -216,6 +182,12 @@ void Builder::Held::again(const Expr& place, const Expr& copy) {
     indices_.push_back(copy.args[1].get());
 }
 
+/// Warns of a constant index that the array does not have.
+void Builder::checkIndex(const Expr& index, const Inst* a, const Inst* at) {
+    if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
+        report(index.place, msg::kIndexNearest(indexText(at->numbers[0]), arrayLength(a)));
+}
+
 void Builder::assign(const Expr& l, Inst* value) {
     const Held held(*this, l);
     if (l.kind == ExprKind::Cast && !l.args.empty()) return assign(*l.args[0], value);
@@ -228,124 +200,90 @@ void Builder::assign(const Expr& l, Inst* value) {
     if (base.type.array) {
         Inst* a = array(base);
         Inst* at = expr(*l.args[1], Kind::Float);
-        if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
-            report(l.args[1]->place, msg::kIndexNearest(indexText(at->numbers[0]), arrayLength(a)));
+        checkIndex(*l.args[1], a, at);
         if (a->op == Op::ArrayNew) storeElement(a, elementOf(a, at), coerce(value, a->element));
         return;
     }
-    // A component of a tuple.
     Inst* old = expr(base, Kind::Triple);
     Inst* at = expr(*l.args[1], Kind::Float);
-    value = coerce(value, Kind::Float);
-    std::vector<Inst*> c;
-    for (int n = 0; n < 3; ++n) {
-        Inst* is =
-            n == 0   ? emit(Op::Not, Kind::Bool, {emit(Op::LessEqual, Kind::Bool, {constant(1), at})}) // NaN is component 0
-            : n == 2 ? emit(Op::LessEqual, Kind::Bool, {constant(2), at})
-                     : emit(Op::And, Kind::Bool,
-                            {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), emit(Op::Less, Kind::Bool, {at, constant(2)})});
-        c.push_back(emit(Op::Select, Kind::Float, {is, value, emit(Op::Extract, Kind::Float, {old}, n)}));
-    }
-    assign(base, emit(Op::Triple, Kind::Triple, c));
+    assign(base, withComponent(old, at, coerce(value, Kind::Float)));
 }
 
-Inst* Builder::transformBy(Inst* m, Inst* v, Base base) {
-    switch (base) {
-    case Base::Vector:
-        return runtime1("al_transformvector", {m, v}, Kind::Triple);
-    case Base::Normal:
-        return runtime1("al_transformnormal", {m, v}, Kind::Triple);
-    case Base::Matrix:
-        return multiply(v, m);
-    default:
-        return runtime1("al_transformpoint", {m, v}, Kind::Triple);
-    }
+/// Reads a[i] of an array that has storage, an input or constant texts.
+Inst* Builder::arrayElement(const Expr& e) {
+    Inst* a = array(*e.args[0]);
+    Inst* at = expr(*e.args[1], Kind::Float);
+    checkIndex(*e.args[1], a, at);
+    const auto open = given_.find(a); // as long as the scene wants it: behind that there is nothing
+    const bool behind = open != given_.end() && isConst(at) && at->numbers[0] >= static_cast<float>(open->second);
+    if (behind) return zero(a->element);
+    if (const auto t = texts_.find(a);
+        t != texts_.end() && isConst(at) && at->numbers[0] >= 0 && at->numbers[0] < static_cast<float>(t->second.size()))
+        return leaves_.string(t->second[static_cast<size_t>(at->numbers[0])]);
+    Inst* v = loadElement(a, elementOf(a, at));
+    if (open == given_.end() || isConst(at)) return v;
+    return emit(Op::Select, a->element,
+                {emit(Op::LessEqual, Kind::Bool, {constant(static_cast<float>(open->second)), at}), zero(a->element), v});
 }
 
-Inst* Builder::toSpace(const std::string& from, const std::string& to, Inst* v, Base base, const Place&) {
-    if (from == to) return v;
-    if (from != "current") v = transformBy(space(from, "current"), v, base);
-    if (to != "current") v = transformBy(space("current", to), v, base);
+Inst* Builder::assignment(const Expr& e) {
+    const Expr& l = *e.args[0];
+    if (l.type.array) {
+        Inst* a = array(l);
+        if (lengths(a)) copyResizable(a, *e.args[1]);
+        else if (a->op == Op::ArrayNew) copyArray(a, *e.args[1]);
+        return a;
+    }
+    Inst* v;
+    uniformContext_ = l.symbol && l.symbol->storage == Storage::Uniform;
+    std::optional<Held> held;
+    if (e.text == "+=") { // of strings: the value is the call that joins them, with the place as it was
+        held.emplace(*this, l);
+        held->again(l, *e.args[1]->args[0]);
+        v = expr(*e.args[1]);
+    } else if (e.op == ExprOp::Assign || e.op == ExprOp::None) {
+        v = expr(*e.args[1]);
+    } else {
+        held.emplace(*this, l);
+        Inst* old = expr(l);
+        Inst* r = expr(*e.args[1]);
+        place_ = e.place;
+        v = binary(e, old, r);
+    }
+    uniformContext_ = false;
+    v = coerce(v, kindOf(l.type) == Kind::None ? v->kind : kindOf(l.type));
+    assign(l, v);
     return v;
 }
 
-static std::string lower(std::string s) {
-    for (char& c : s) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-    return s;
+/// (a, b, c), or sixteen numbers of a matrix, in current space.
+Inst* Builder::tuple(const Expr& e) {
+    const bool matrix = e.kind == ExprKind::MatrixTuple;
+    const Kind kind = matrix ? Kind::Matrix : Kind::Triple;
+    std::vector<Inst*> c;
+    for (const ExprPtr& a : e.args) c.push_back(expr(*a, Kind::Float));
+    const bool complete = c.size() == (matrix ? 16 : 3);
+    Inst* v = complete ? emit(matrix ? Op::MatrixOf : Op::Triple, kind, c) : coerce(c.empty() ? constant(0) : c[0], kind);
+    return e.space && (complete || matrix) ? inSpace(*e.space, v, matrix ? Base::Matrix : e.type.base) : v;
 }
 
-Inst* Builder::colourSpace(const std::string& from, const std::string& to, Inst* v) {
-    const std::string f = lower(from), t = lower(to);
-    const auto known = [](const std::string& s) { return s == "hsv" || s == "hsl" || s == "yiq" || s == "xyz"; };
-    if (f == t || (!known(f) && f != "rgb") || (!known(t) && t != "rgb")) return v; // an unknown space leaves the colour as it is
-    if (f != "rgb") v = runtime1("al_" + f + "_to_rgb", {v}, Kind::Triple);
-    return t == "rgb" ? v : runtime1("al_rgb_to_" + t, {v}, Kind::Triple);
+Inst* Builder::binary(const Expr& e) {
+    if (e.op == ExprOp::And || e.op == ExprOp::Or) return both(e);
+    Inst* a = expr(*e.args[0]);
+    Inst* b = expr(*e.args[1]);
+    place_ = e.place;
+    return binary(e, a, b);
 }
 
-/// The name of a space as the renderer has it: "shader" of a co-shader is where that was named.
-Inst* Builder::ownSpace(Inst* name) {
-    if (current_.empty() || isSelf(current_.back())) return name;
-    const std::string& own = instances_[current_.back()].binding->space;
-    if (own.empty()) return name;
-    Inst* there = leaves_.string(own);
-    if (name->op == Op::ConstString) return name->text == "shader" ? there : name;
-    return emit(Op::Select, Kind::String, {emit(Op::Equal, Kind::Bool, {name, leaves_.string("shader")}), there, name});
+Inst* Builder::conditional(const Expr& e) {
+    Inst* c = condition(*e.args[0]);
+    const auto side = [&](size_t n) { return [&e, n, this] { return std::vector<Inst*>{expr(*e.args[n], kindOf(e.type))}; }; };
+    return branch(c, side(1), side(2))[0];
 }
 
-/// Names that are not known at compile time: the renderer answers. Two Strings and the value.
-Inst* Builder::dynamicSpace(const char* op, Inst* from, Inst* to, Inst* value, Base base) {
-    if (base != Base::Color)
-        for (Inst** name : {&from, &to}) *name = ownSpace(*name);
-    Site s;
-    s.op = op;
-    s.strings = {from->op == Op::ConstString ? from->text : "", to->op == Op::ConstString ? to->text : ""};
-    std::vector<Inst*> args;
-    for (Inst* name : {from, to})
-        if (name->op != Op::ConstString) {
-            args.push_back(name);
-            s.argKinds.push_back(Kind::String);
-            s.argTypes.push_back({Base::String, 0});
-        }
-    args.push_back(value);
-    s.argKinds.push_back(value->kind);
-    s.argTypes.push_back({base, 0});
-    s.resultKinds = {value->kind};
-    s.resultNames = {""};
-    s.resultType = {base, 0};
-    s.pure = true;
-    s.shadeop = findShadeop(op);
-    return call(Op::Service, std::move(s), std::move(args))[0];
-}
-
-/// `value`, given in the space that the expression names, in current space (colours: rgb).
-Inst* Builder::inSpace(const Expr& spaceName, Inst* value, Base base) {
-    if (value->kind == Kind::Array) { // each of the elements
-        const Lengths* known = lengths(value);
-        Inst* a = known ? newResizable(base, 0) : newArray(base, arrayLength(value));
-        if (known) {
-            set(lengths(a)->length, resized(a, lengthOf(value)));
-            set(lengths(a)->reserved, get(lengths(a)->length));
-        }
-        const int storage = std::min(known ? value->index : arrayLength(value), known ? a->index : arrayLength(a));
-        everyElement(storage, [&](Inst* at) {
-            emit(Op::ArrayStore, Kind::None, {a, at, inSpace(spaceName, emit(Op::ArrayLoad, value->element, {value, at}), base)});
-        });
-        if (known && unbound_)
-            countLoop(constant(static_cast<float>(storage)), lengthOf(a),
-                      [&](Inst* at) { storeElement(a, at, inSpace(spaceName, loadElement(value, at), base)); });
-        return a;
-    }
-    Inst* name = expr(spaceName);
-    if (base == Base::Color) {
-        if (name->op == Op::ConstString) return colourSpace(name->text, "rgb", value);
-        return dynamicSpace("ctransform", name, leaves_.string("rgb"), value, base);
-    }
-    if (name->op == Op::ConstString) return toSpace(name->text, "current", value, base, spaceName.place);
-    const char* op = base == Base::Vector   ? "vtransform"
-                     : base == Base::Normal ? "ntransform"
-                     : base == Base::Matrix ? "mtransform"
-                                            : "transform";
-    return dynamicSpace(op, name, leaves_.string("current"), value, base);
+Inst* Builder::sequence(const Expr& e) {
+    for (size_t n = 0; n + 1 < e.args.size(); ++n) expr(*e.args[n]);
+    return expr(*e.args.back());
 }
 
 Inst* Builder::expr(const Expr& e) {
@@ -354,10 +292,7 @@ Inst* Builder::expr(const Expr& e) {
     if (!held_.empty())
         if (const auto known = held_.find(&e); known != held_.end()) return known->second;
     if (e.place.line) place_ = e.place;
-    if (e.kind == ExprKind::Sequence) {
-        for (size_t n = 0; n + 1 < e.args.size(); ++n) expr(*e.args[n]);
-        return expr(*e.args.back());
-    }
+    if (e.kind == ExprKind::Sequence) return sequence(e);
     if (e.type.array && e.kind != ExprKind::Assign && e.kind != ExprKind::FunctionCall && e.kind != ExprKind::ShadeopCall)
         return array(e);
     switch (e.kind) {
@@ -370,97 +305,22 @@ Inst* Builder::expr(const Expr& e) {
     case ExprKind::Index: {
         const Expr& base = *e.args[0];
         if (base.kind == ExprKind::Member) return memberElement(e);
-        if (base.type.array) {
-            Inst* a = array(base);
-            Inst* at = expr(*e.args[1], Kind::Float);
-            if (isConst(at) && lengthKnown(a) && (at->numbers[0] <= -1 || at->numbers[0] >= static_cast<float>(arrayLength(a))))
-                report(e.args[1]->place, msg::kIndexNearest(indexText(at->numbers[0]), arrayLength(a)));
-            const auto open = given_.find(a); // as long as the scene wants it: behind that there is nothing
-            const bool behind = open != given_.end() && isConst(at) && at->numbers[0] >= static_cast<float>(open->second);
-            if (behind) return zero(a->element);
-            if (const auto t = texts_.find(a);
-                t != texts_.end() && isConst(at) && at->numbers[0] >= 0 && at->numbers[0] < static_cast<float>(t->second.size()))
-                return leaves_.string(t->second[static_cast<size_t>(at->numbers[0])]);
-            Inst* v = loadElement(a, elementOf(a, at));
-            if (open == given_.end() || isConst(at)) return v;
-            return emit(Op::Select, a->element,
-                        {emit(Op::LessEqual, Kind::Bool, {constant(static_cast<float>(open->second)), at}), zero(a->element), v});
-        }
+        if (base.type.array) return arrayElement(e);
         Inst* v = expr(base, Kind::Triple);
-        Inst* at = expr(*e.args[1], Kind::Float);
-        if (isConst(at)) return emit(Op::Extract, Kind::Float, {v}, at->numbers[0] >= 2 ? 2 : at->numbers[0] >= 1 ? 1 : 0);
-        const auto c = [&](int n) { return emit(Op::Extract, Kind::Float, {v}, n); };
-        // NaN is component 0, as where one is stored and in arrays
-        Inst* low = emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(1), at}), c(1), c(0)});
-        return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), c(2), low});
+        return component(v, expr(*e.args[1], Kind::Float));
     }
-    case ExprKind::Unary: {
+    case ExprKind::Unary:
         if (e.op == ExprOp::Not) return emit(Op::Not, Kind::Bool, {condition(*e.args[0])});
-        Inst* v = expr(*e.args[0]);
-        if (v->kind == Kind::Matrix) {
-            std::vector<Inst*> m;
-            for (int n = 0; n < 16; ++n) m.push_back(emit(Op::Neg, Kind::Float, {emit(Op::Extract, Kind::Float, {v}, n)}));
-            return emit(Op::MatrixOf, Kind::Matrix, m);
-        }
-        if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
-        return emit(Op::Neg, v->kind, {v});
-    }
-    case ExprKind::Binary: {
-        if (e.op == ExprOp::And || e.op == ExprOp::Or) return both(e);
-        Inst* a = expr(*e.args[0]);
-        Inst* b = expr(*e.args[1]);
-        place_ = e.place;
-        return binary(e, a, b);
-    }
-    case ExprKind::Assign: {
-        const Expr& l = *e.args[0];
-        if (l.type.array) {
-            Inst* a = array(l);
-            if (lengths(a)) copyResizable(a, *e.args[1]);
-            else if (a->op == Op::ArrayNew) copyArray(a, *e.args[1]);
-            return a;
-        }
-        Inst* v;
-        uniformContext_ = l.symbol && l.symbol->storage == Storage::Uniform;
-        std::optional<Held> held;
-        if (e.text == "+=") { // of strings: the value is the call that joins them, with the place as it was
-            held.emplace(*this, l);
-            held->again(l, *e.args[1]->args[0]);
-            v = expr(*e.args[1]);
-        } else if (e.op == ExprOp::Assign || e.op == ExprOp::None) {
-            v = expr(*e.args[1]);
-        } else {
-            held.emplace(*this, l);
-            Inst* old = expr(l);
-            Inst* r = expr(*e.args[1]);
-            place_ = e.place;
-            v = binary(e, old, r);
-        }
-        uniformContext_ = false;
-        v = coerce(v, kindOf(l.type) == Kind::None ? v->kind : kindOf(l.type));
-        assign(l, v);
-        return v;
-    }
-    case ExprKind::Conditional: {
-        Inst* c = condition(*e.args[0]);
-        const Kind k = kindOf(e.type);
-        return branch(
-            c, [&] { return std::vector<Inst*>{expr(*e.args[1], k)}; },
-            [&] { return std::vector<Inst*>{expr(*e.args[2], k)}; })[0];
-    }
-    case ExprKind::Tuple: {
-        std::vector<Inst*> c;
-        for (const ExprPtr& a : e.args) c.push_back(expr(*a, Kind::Float));
-        if (c.size() != 3) return c.empty() ? zero(Kind::Triple) : coerce(c[0], Kind::Triple);
-        Inst* v = emit(Op::Triple, Kind::Triple, c);
-        return e.space ? inSpace(*e.space, v, e.type.base) : v;
-    }
-    case ExprKind::MatrixTuple: {
-        std::vector<Inst*> c;
-        for (const ExprPtr& a : e.args) c.push_back(expr(*a, Kind::Float));
-        Inst* v = c.size() == 16 ? emit(Op::MatrixOf, Kind::Matrix, c) : coerce(c.empty() ? constant(0) : c[0], Kind::Matrix);
-        return e.space ? inSpace(*e.space, v, Base::Matrix) : v;
-    }
+        return negative(expr(*e.args[0]));
+    case ExprKind::Binary:
+        return binary(e);
+    case ExprKind::Assign:
+        return assignment(e);
+    case ExprKind::Conditional:
+        return conditional(e);
+    case ExprKind::Tuple:
+    case ExprKind::MatrixTuple:
+        return tuple(e);
     case ExprKind::ArrayList:
         return array(e);
     case ExprKind::Cast: {

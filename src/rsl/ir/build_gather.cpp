@@ -36,10 +36,6 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
     g.site.resultType = g.turn.resultType = real;
     g.site.shadeop = g.turn.shadeop = findShadeop("gather");
     const std::string number = std::to_string(gathers_++);
-    const auto constantPair = [](Site& site, const std::string& name, const std::string& text) {
-        site.names.push_back(name);
-        site.pairStrings.push_back(text);
-    };
     g.site.strings.push_back("");
     if (s.category) {
         const Inst* c = expr(*s.category);
@@ -50,8 +46,8 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
     const Type types[] = {point, vector, real, real};
     for (size_t i = 0; i < 4; ++i)
         addArgument(g.site, g.args, i < s.exprs.size() ? expr(*s.exprs[i], kinds[i]) : zero(kinds[i]), types[i]);
-    constantPair(g.site, kPairGather, number);
-    constantPair(g.turn, kPairGather, number);
+    addPair(g.site, kPairGather, number);
+    addPair(g.turn, kPairGather, number);
     g.turn.resultKinds = {Kind::Float};
     g.turn.resultNames = {""};
     for (const Pair& p : pairsOf(s)) {
@@ -78,9 +74,7 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
         }
         if (!text) v = coerce(v, p.name == "othreshold" ? Kind::Triple : Kind::Float);
         if (v->op == Op::ConstString && v->text.empty()) continue;
-        constantPair(g.site, p.name, v->op == Op::ConstString ? v->text : "");
-        if (v->op != Op::ConstString)
-            addArgument(g.site, g.args, v, {wantsText ? Base::String : v->kind == Kind::Triple ? Base::Color : Base::Float, 0});
+        addPair(g.site, g.args, p.name, v, {wantsText ? Base::String : v->kind == Kind::Triple ? Base::Color : Base::Float, 0});
     }
     g.site.resultKinds = {Kind::Float};
     g.site.resultNames = {""};
@@ -96,7 +90,7 @@ void Builder::send(Site& site, std::vector<Inst*>& args, const Pair& p) {
         report(p.place, msg::kGatherSend(p.name));
         return;
     }
-    const bool handle = p.value->handle || (p.value->symbol && p.value->symbol->handle);
+    const bool handle = type.base == Base::Shader;
     if (handle || (pair.to == PairName::To::Light && type.base == Base::String)) {
         report(p.place, handle ? msg::kGatherSendShader(p.name) : msg::kGatherSendString(p.name));
         return;
@@ -125,56 +119,44 @@ std::set<int> Builder::assignedByGather(const Stmt& s) {
     return assigned;
 }
 
+/// One turn: the variables get what the ray found, and the statement for a hit or a miss runs.
+void Builder::gatherTurn(const Stmt& s, GatherCall& g, Inst* ray) {
+    std::vector<Inst*> args;
+    addArgument(g.turn, args, ray, {Base::Float, 0});
+    place_ = s.place;
+    const std::vector<Inst*> r = call(Op::Service, std::move(g.turn), std::move(args));
+    for (const auto& [receiver, flag] : g.outputs)
+        receive(receiver, std::span(r).subspan(flag + 1, static_cast<size_t>(receiver.rows)), isNot0(r[flag]));
+    when(
+        isNot0(r[0]), [&] { statements(s.body, 0); },
+        [&] {
+            if (s.elseBody) statement(*s.elseBody);
+        });
+}
+
 void Builder::gather(const Stmt& s) {
     GatherCall g = gatherCall(s);
     std::set<int> assigned = assignedByGather(s);
     const int turn = newSlot(constant(0)), end = newSlot(constant(1)), left = newSlot(constant(0));
     assigned.insert({turn, end, left});
     const auto less = [&](Inst* a, Inst* b) { return emit(Op::Less, Kind::Bool, {a, b}); };
-    const auto nothing = [] { return std::vector<Inst*>{}; };
     // The arguments of the request: P, dir, angle, samples, then the number of the turn, then pairs.
     g.site.argKinds.insert(g.site.argKinds.begin() + 4, Kind::Float);
     g.site.argTypes.insert(g.site.argTypes.begin() + 4, Type{Base::Float, 0});
     Turns t;
     t.goesOn = [&] { return less(get(turn), get(end)); };
     t.turn = [&] {
-        branch(
-            less(get(left), constant(0.5f)),
-            [&] {
-                std::vector<Inst*> args = g.args;
-                args.insert(args.begin() + 4, get(turn));
-                place_ = s.place;
-                set(end, call(Op::Request, std::move(g.site), std::move(args))[0]);
-                set(left, constant(static_cast<float>(kGatherRays)));
-                return std::vector<Inst*>{};
-            },
-            nothing);
+        when(less(get(left), constant(0.5f)), [&] {
+            std::vector<Inst*> args = g.args;
+            args.insert(args.begin() + 4, get(turn));
+            place_ = s.place;
+            set(end, call(Op::Request, std::move(g.site), std::move(args))[0]);
+            set(left, constant(static_cast<float>(kGatherRays)));
+        });
         Inst* now = get(turn);
         set(turn, emit(Op::Add, Kind::Float, {now, constant(1)}));
         set(left, emit(Op::Sub, Kind::Float, {get(left), constant(1)}));
-        branch(
-            less(now, get(end)),
-            [&] {
-                std::vector<Inst*> args;
-                addArgument(g.turn, args, now, {Base::Float, 0});
-                place_ = s.place;
-                const std::vector<Inst*> r = call(Op::Service, std::move(g.turn), std::move(args));
-                for (const auto& [receiver, flag] : g.outputs)
-                    receive(receiver, std::span(r).subspan(flag + 1, static_cast<size_t>(receiver.rows)),
-                            emit(Op::NotEqual, Kind::Bool, {r[flag], constant(0)}));
-                branch(
-                    emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}),
-                    [&] {
-                        statements(s.body, 0);
-                        return std::vector<Inst*>{};
-                    },
-                    [&] {
-                        if (s.elseBody) statement(*s.elseBody);
-                        return std::vector<Inst*>{};
-                    });
-                return std::vector<Inst*>{};
-            },
-            nothing);
+        when(less(now, get(end)), [&] { gatherTurn(s, g, now); });
     };
     const bool jump = std::any_of(s.body.begin(), s.body.end(), [](const StmtPtr& b) { return b && jumps(*b); }) ||
                       (s.elseBody && jumps(*s.elseBody));

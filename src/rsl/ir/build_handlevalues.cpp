@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "rsl/front/protocol.h"
 #include "rsl/front/visit.h"
+#include "rsl/front/writes.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 
@@ -12,36 +13,14 @@ namespace alpenglow::rsl::ir {
 bool Builder::everWritten(const Symbol& s) {
     if (!written_) {
         written_.emplace();
-        const auto add = [&](const Expr* e) {
-            while (e->kind == ExprKind::Index && !e->args.empty()) e = e->args[0].get();
-            if (e->symbol) written_->insert(e->symbol);
+        const auto add = [&](const Expr& place) {
+            if (const Symbol* root = front::rootOf(place)) written_->insert(root);
         };
-        const auto expression = [&](const Expr& e) {
-            if (e.kind == ExprKind::Assign) add(e.args[0].get());
-            const bool other = e.kind == ExprKind::Method; // its parameters are not known yet
-            for (size_t n = 0; n < e.args.size(); ++n) {
-                const bool output = e.signature
-                                        ? n < e.signature->parameters.size() && e.signature->parameters[n].output
-                                        : e.function && n < e.function->parameters.size() && e.function->parameters[n]->output;
-                if ((output || other) && e.args[n]) add(e.args[n].get());
-            }
-            for (const NamedArg& p : e.pairs)
-                if (p.output && p.value) add(p.value.get());
+        const auto body = [&](const Stmt& b) {
+            front::everyStmt(
+                b, [&](const Stmt& x) { front::eachWritten(x, add); }, [&](const Expr& e) { front::eachWritten(e, add); });
         };
-        const auto body = [&](const StmtPtr& b) {
-            if (b)
-                front::everyStmt(
-                    *b,
-                    [&](const Stmt& x) {
-                        for (const NamedArg& p : x.pairs)
-                            if (p.value) add(p.value.get());
-                    },
-                    expression);
-        };
-        const auto program = [&](const Program& p) {
-            for (const auto& x : p.shaders) body(x->body);
-            front::everyFunction(p, [&](const Function& f) { body(f.body); });
-        };
+        const auto program = [&](const Program& p) { front::everyBody(p, body); };
         program(program_);
         for (const CoShader& c : options_.coShaders) program(*c.program);
     }

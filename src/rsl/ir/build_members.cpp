@@ -113,7 +113,7 @@ bool among(const std::string& name, std::initializer_list<const char*> names) {
 /// getvar(null, name [, variable]): of the primitive. `to` may be null.
 Inst* Builder::primitiveVariable(const std::string& name, const Expr* to) {
     if (shader_.kind == ShaderKind::Light || shader_.kind == ShaderKind::Imager ||
-        (to && (to->type.array || to->type.base == Base::String)))
+        (to && (to->type.array || isStringLike(to->type.base))))
         return askPrimitive(leaves_.string(name), to);
     const auto& there = options_.varyingParameters;
     if (std::find(there.begin(), there.end(), name) == there.end()) {

@@ -66,7 +66,7 @@ bool Builder::heardDisplacement(const Expr& call, const std::string& name, Inst*
         const Expr* root = &to;
         while (root->kind == ExprKind::Index && !root->args.empty()) root = root->args[0].get();
         const bool uniform =
-            root->symbol && root->symbol->storage == Storage::Uniform && to.type.base != Base::String; // strings have no classes
+            root->symbol && root->symbol->storage == Storage::Uniform && !isStringLike(to.type.base); // strings have no classes
         Inst* a = to.type.array ? array(to) : nullptr;
         const bool open = a && lengths(a);
         found = constant(0);

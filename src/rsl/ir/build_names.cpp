@@ -30,7 +30,7 @@ std::string lastWord(const std::string& text) {
 bool takes(const OptionalParameter& o, const Expr& v) {
     const Type t = v.type;
     const auto width = [](Base b) { return componentCount(b); };
-    if ((o.type.base == Base::String) != (t.base == Base::String))
+    if (isStringLike(o.type.base) != isStringLike(t.base))
         return !o.output && o.type == Type{Base::String, 0} && o.name.ends_with("space") && t.base == Base::Matrix && !t.array;
     if (o.output) return isPlace(v) && width(o.type.base) == width(t.base);
     if (t.array && !o.type.array) return false;

@@ -30,7 +30,7 @@ bool Builder::runPattern(size_t i) {
     if (!c.shader->object && c.shader->body) {
         // What it writes to Ci and other globals is not used.
         std::map<std::string, Inst*> before;
-        for (const auto& [name, n] : globals_) before[name] = env_[static_cast<size_t>(n)];
+        for (const auto& [name, n] : globals_) before[name] = value(n);
         enterInstance(i);
         ++handleDepth_;
         Frame frame;
@@ -42,11 +42,11 @@ bool Builder::runPattern(size_t i) {
         leaveInstance();
         for (const auto& [name, n] : std::map<std::string, int>(globals_)) {
             const auto was = before.find(name);
-            Inst* value = was == before.end() ? nullptr : was->second;
-            if (env_[static_cast<size_t>(n)] == value) continue;
-            const Symbol* s = symbols_[static_cast<size_t>(n)];
-            if (!value && s) value = initialGlobal(name, s->type);
-            if (value) set(n, value);
+            Inst* old = was == before.end() ? nullptr : was->second;
+            if (value(n) == old) continue;
+            const Symbol* s = symbol(n);
+            if (!old && s) old = initialGlobal(name, s->type);
+            if (old) set(n, old);
         }
     }
     place_ = outside;

@@ -2,6 +2,7 @@
 // reads from outside as region parameters; passes/outline.h then decides whether its calls stay calls. Constant strings (names of
 // spaces, bases of splines) are bound, not passed: what they mean is decided here. A function that needs services, rays or lights
 // is inlined: those belong to places in the shader.
+#include "rsl/front/visit.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <unordered_set>
@@ -29,12 +30,7 @@ void Builder::scan(const Expr& e, Scan& to) {
         to.survey.possible =
             to.survey.possible && (l == Lowering::Runtime || l == Lowering::Special) && e.shadeop->name != "random";
     }
-    for (const ExprPtr& a : e.args)
-        if (a) scan(*a, to);
-    for (const NamedArg& p : e.pairs)
-        if (p.value) scan(*p.value, to);
-    for (const ExprPtr* p : {&e.space, &e.channel})
-        if (*p) scan(**p, to);
+    front::eachPart(e, [&](const Expr& x) { scan(x, to); });
 }
 
 void Builder::scan(const Stmt& s, Scan& to) {
@@ -42,19 +38,9 @@ void Builder::scan(const Stmt& s, Scan& to) {
     if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Illuminate || s.kind == StmtKind::Solar ||
         s.kind == StmtKind::Gather)
         to.survey.possible = false;
-    for (const StmtPtr& b : s.body)
-        if (b) scan(*b, to);
-    if (s.elseBody) scan(*s.elseBody, to);
-    for (const ExprPtr* p : {&s.condition, &s.init, &s.step, &s.value, &s.category})
-        if (*p) scan(**p, to);
-    for (const ExprPtr& e : s.exprs)
-        if (e) scan(*e, to);
-    for (const NamedArg& p : s.pairs)
-        if (p.value) scan(*p.value, to);
-    for (const Stmt::Declarator& d : s.declarators) {
-        to.own.insert(d.symbol);
-        if (d.init) scan(*d.init, to);
-    }
+    for (const Stmt::Declarator& d : s.declarators) to.own.insert(d.symbol);
+    front::eachPart(s, [&](const Expr& x) { scan(x, to); });
+    front::eachBody(s, [&](const StmtPtr& b) { scan(*b, to); });
 }
 
 const Builder::Scan& Builder::scan(const Function& f) {
@@ -112,9 +98,8 @@ bool Builder::selfContained(const Region& region) const {
 }
 
 bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, const Survey& about, Outlined& out) {
-    const std::vector<Inst*> env = env_;
-    const size_t log = log_.size(), sites = k_.sites.size();
-    Region* const saved = region_;
+    const Environment around = environment();
+    const size_t sites = k_.sites.size();
     Inst* function = k_.make(Op::Function, Kind::None);
     function->text = f.name;
     function->place = keptPlace(f.place);
@@ -124,14 +109,12 @@ bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, 
     bool good = true;
     const auto bind = [&](int n, Inst* v) {
         if (v->op == Op::ConstString) {
-            env_[static_cast<size_t>(n)] = v;
+            value(n) = v;
             return false;
         }
-        Inst* p = k_.make(Op::RegionParam, v->kind);
-        p->index = static_cast<int>(body.params.size());
+        Inst* p = parameter(body, v->kind);
         p->place = keptPlace(f.place);
-        body.params.push_back(p);
-        env_[static_cast<size_t>(n)] = p;
+        value(n) = p;
         return true;
     };
     for (size_t i = 0; i < values.size(); ++i) bind(slot(f.parameters[i]), values[i]);
@@ -160,10 +143,7 @@ bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, 
             body.yields.push_back(get(n));
         }
     }
-    region_ = saved;
-    log_.resize(log);
-    std::fill(env_.begin(), env_.end(), nullptr);
-    std::copy(env.begin(), env.end(), env_.begin());
+    goBackTo(around);
     for (const Inst* y : body.yields) good = good && y->kind != Kind::Array;
     if (!good || failed_ || body.yields.empty() || !selfContained(body)) {
         k_.sites.resize(sites);

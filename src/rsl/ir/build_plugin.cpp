@@ -8,7 +8,7 @@ Inst* Builder::pluginCall(const Expr& e) {
     const Signature& sig = *e.signature;
     Site s;
     s.op = sig.symbol;
-    s.resultType = e.type;
+    s.resultType = storedType(e.type);
     s.pure = true; // the header says so; derivatives are zero: no descriptor, which would not live as long as the kernel
     std::vector<Inst*> args;
     const Kind result = kindOf(sig.result);

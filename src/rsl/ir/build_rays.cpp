@@ -38,7 +38,7 @@ Inst* Builder::rays(const Expr& e, const char* name, const std::vector<std::pair
             if (o.name == p.name && o.output == p.output) known = &o;
         if (!p.value || !known) continue; // filters of maps
         if (p.value->type.array) {
-            if (p.output || !known->type.array || (known->type.base == Base::String) != (p.value->type.base == Base::String))
+            if (p.output || !known->type.array || (known->type.base == Base::String) != isStringLike(p.value->type.base))
                 continue;
             Inst* from = array(*p.value);
             for (int n = 0; n < arrayLength(from); ++n)

@@ -1,285 +1,262 @@
 // Calls that the renderer answers: what goes along with them, and what comes back.
-#include "base/limits.h"
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
-#include <cstdio>
 #include <set>
+#include <string_view>
 
 namespace alpenglow::rsl::ir {
 
-void Builder::addArgument(Site& s, std::vector<Inst*>& args, Inst* v, Type t) {
-    args.push_back(v);
-    s.argKinds.push_back(v->kind);
-    s.argTypes.push_back(t);
-}
-
-/// concat and format of constants; null when something is not constant.
-Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args) {
-    for (const Inst* a : args)
-        if (a->op != Op::ConstString && !(a->op == Op::Const && a->kind == Kind::Float)) return nullptr;
-    std::string out;
-    if (op == "concat") {
-        for (const Inst* a : args) out += a->text;
-        if (out.size() > limits::kTokenBytes) return nullptr; // cut off and reported when it runs
-        return leaves_.string(out);
-    }
-    if (op != "format" || args.empty() || args[0]->op != Op::ConstString) return nullptr;
-    const std::string& p = args[0]->text;
-    size_t next = 1;
-    for (size_t i = 0; i < p.size(); ++i) {
-        if (p[i] != '%') {
-            out += p[i];
-            continue;
-        }
-        if (i + 1 < p.size() && p[i + 1] == '%') {
-            out += '%';
-            ++i;
-            continue;
-        }
-        // Only the plain conversions; widths and precisions are the service's business.
-        if (i + 1 >= p.size() || next >= args.size()) return nullptr;
-        const Inst* a = args[next++];
-        const char c = p[++i];
-        if (c == 's' && a->op == Op::ConstString) out += a->text;
-        else if (c == 'd' && a->op == Op::Const) {
-            char text[64];
-            std::snprintf(text, sizeof text, "%.0f", static_cast<double>(a->numbers[0]));
-            out += text;
-        } else return nullptr;
-    }
-    return leaves_.string(out);
-}
-
-/// The form of trace() that gives an array: a request for each part of the distribution.
-std::vector<Inst*> Builder::traceParts(const Expr& written) {
-    const Expr& e = withNames(written);
-    std::string name = "uniform";
-    std::optional<int> numbers; // of "lobeparameters"
-    for (const NamedArg& p : e.pairs) {
-        if (!p.value) continue;
-        if (p.name == "distribution" || p.name == "bsdf") {
-            const Inst* v = expr(*p.value, Kind::String);
-            name = v->op == Op::ConstString ? v->text : "";
-        } else if (p.name == "lobeparameters" && p.value->type.array) {
-            numbers = arrayLength(array(*p.value));
-        }
-    }
-    const Distribution* const m = findDistribution(name);
-    if (!m || m->parts == 1) {
-        report(e.place, name.empty() ? Raised(msg::kTracePartsConstant) : msg::kTraceParts(name));
-        return {service(e, Op::Request)};
-    }
-    int count = m->parts;
-    if (!m->lobe.empty()) count = std::clamp(numbers ? *numbers / static_cast<int>(m->lobe.size()) : m->lobes, 1, m->parts);
-    std::vector<Inst*> parts;
-    for (int i = 0; i < count; ++i) parts.push_back(service(e, Op::Request, i));
-    return parts;
-}
-
-/// `part`: of a call that gives an array; -1: all in one. `points`: it is answered from point clouds.
-Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
+/// One call while it is built: arguments, pairs and results go into the same site, in this order.
+struct Builder::ServiceCall {
+    Builder& b;
+    const Expr& e;
+    const Op kind;     ///< Service or Request
+    const int part;    ///< of a call that gives an array; -1: all in one
+    const bool points; ///< it is answered from point clouds
     const Shadeop& op = *e.shadeop;
     const Signature& sig = *e.signature;
     const bool parted = kind == Op::Request && sig.result.array;
-    Site s;
-    s.op = op.name;
-    s.shadeop = &op;
-    s.resultType = parted ? e.type.element() : e.type;
-    s.pure = op.pure && kind == Op::Service;
-    const auto mark = [&](const char* pair) { s.names.push_back(pair), s.pairStrings.push_back("1"); };
-    std::vector<Inst*> args;
+    /// Kind of the result; None where there is none, or several.
+    const Kind whole = parted ? kindOf(sig.result.element()) : sig.result.array ? Kind::None : kindOf(sig.result);
+    Site site{};
+    std::vector<Inst*> args{}; ///< of the instruction
+    /// A variable, and which results it takes.
     struct Out {
         const Expr* lvalue;
         int first;
         int count;
         int at = 0; ///< the first element of an array
     };
-    std::vector<Out> outs;
-    std::vector<std::pair<Receiver, int>> received; ///< of messages, with their first results
-    const Kind whole = parted ? kindOf(sig.result.element()) : sig.result.array ? Kind::None : kindOf(sig.result);
-    if (whole != Kind::None) {
-        s.resultKinds.push_back(whole);
-        s.resultNames.push_back("");
+    std::vector<Out> outs{};
+    std::vector<std::pair<Receiver, int>> received{}; ///< of messages, with their first results
+    std::vector<Inst*> positional{};                  ///< arguments that are no arrays, constant strings among them
+
+    void mark(const char* pair) { addPair(site, pair, "1"); }
+    void begin();
+    void output(const Expr& variable, const std::string& name);
+    void result(Kind, const std::string& name);
+    void arguments();
+    void argument(const Expr&, const Parameter&);
+    Inst* footprint(Inst* v, const char* size, Op derivative);
+    void footprints();
+    void pairs();
+    void pair(const NamedArg&);
+    void arrayPair(const NamedArg&);
+    void hiddenPairs();
+    Inst* finish();
+    void store(const Out&, std::span<Inst* const> results, Inst* read);
+};
+
+namespace {
+
+bool isOneOf(std::span<const std::string_view> names, const std::string& name) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+}
+
+bool isUniform(const Expr* l) {
+    while (l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
+    return l->symbol && l->symbol->storage == Storage::Uniform;
+}
+
+} // namespace
+
+void Builder::ServiceCall::result(Kind k, const std::string& name) {
+    site.resultKinds.push_back(k);
+    site.resultNames.push_back(name);
+}
+
+void Builder::ServiceCall::begin() {
+    site.op = op.name;
+    site.shadeop = &op;
+    site.resultType = storedType(parted ? e.type.element() : e.type);
+    site.pure = op.pure && kind == Op::Service;
+    if (whole != Kind::None) result(whole, "");
+}
+
+void Builder::ServiceCall::output(const Expr& l, const std::string& name) {
+    const int first = static_cast<int>(site.resultKinds.size());
+    if (op.section == "Messages" && !parted) {
+        received.push_back({b.receiver(site, l, name), first});
+        return;
     }
-    const auto output = [&](const Expr& l, const std::string& name) {
-        if (op.section == "Messages" && !parted) {
-            const int first = static_cast<int>(s.resultKinds.size());
-            received.push_back({receiver(s, l, name), first});
-            return;
-        }
-        Out o{&l, static_cast<int>(s.resultKinds.size()), 1};
-        if (l.type.array && parted) { // the element of this part
-            o.at = std::max(part, 0);
-            if (o.at >= arrayLength(array(l))) return;
-            s.resultKinds.push_back(kindOf(l.type.element()));
-            s.resultNames.push_back(name);
-        } else if (part > 0) {
-            return; // what belongs to all parts comes with the first
-        } else if (l.type.array) {
-            Inst* a = array(l);
-            o.count = arrayLength(a);
-            for (int n = 0; n < o.count; ++n) {
-                s.resultKinds.push_back(a->element);
-                s.resultNames.push_back(name + "[" + std::to_string(n) + "]");
-            }
-        } else {
-            s.resultKinds.push_back(kindOf(l.type));
-            s.resultNames.push_back(name);
-        }
-        outs.push_back(o);
-    };
-    std::vector<Inst*> all;
+    Out o{&l, first, 1};
+    if (l.type.array && parted) { // the element of this part
+        o.at = std::max(part, 0);
+        if (o.at >= b.arrayLength(b.array(l))) return;
+        result(kindOf(l.type.element()), name);
+    } else if (part > 0) {
+        return; // what belongs to all parts comes with the first
+    } else if (l.type.array) {
+        Inst* a = b.array(l);
+        o.count = b.arrayLength(a);
+        for (int n = 0; n < o.count; ++n) result(a->element, name + "[" + std::to_string(n) + "]");
+    } else {
+        result(kindOf(l.type), name);
+    }
+    outs.push_back(o);
+}
+
+void Builder::ServiceCall::argument(const Expr& a, const Parameter& p) {
+    if (a.type.array) {
+        Inst* from = b.array(a);
+        b.refuseLonger(from, a.place, op.name + "()");
+        for (int n = 0; n < b.arrayLength(from); ++n) addArgument(site, args, b.load(from, n), a.type.element());
+        return;
+    }
+    Inst* v = b.expr(a);
+    if (p.type.base != Base::Void) v = b.coerce(v, p.type);
+    else if (v->kind == Kind::Bool) v = b.coerce(v, Kind::Float);
+    positional.push_back(v);
+    if (v->kind == Kind::String) site.strings.push_back(v->op == Op::ConstString ? v->text : "");
+    // Where any strings come in rows, "" in the site stands for the next row: an empty one among them needs its own.
+    const bool untyped =
+        (a.kind == ExprKind::Member || a.kind == ExprKind::Method || a.kind == ExprKind::Index) && a.type.base == Base::Void;
+    if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings"))
+        addArgument(site, args, v, untyped ? b.typeOfMember(a) : a.type);
+}
+
+void Builder::ServiceCall::arguments() {
     const size_t fixed = sig.parameters.size();
     for (size_t i = 0; i < e.args.size(); ++i) {
         const Parameter any{};
         const Parameter& p = fixed == 0 ? any : sig.parameters[std::min(i, fixed - 1)];
-        const Expr& a = *e.args[i];
-        if (p.output && i < fixed) {
-            output(a, p.name);
-            continue;
-        }
-        if (a.type.array) {
-            Inst* from = array(a);
-            refuseLonger(from, a.place, op.name + "()");
-            for (int n = 0; n < arrayLength(from); ++n)
-                addArgument(s, args, emit(Op::ArrayLoad, from->element, {from, constant(static_cast<float>(n))}),
-                            a.type.element());
-            continue;
-        }
-        Inst* v = expr(a);
-        if (p.type.base != Base::Void) v = coerce(v, p.type);
-        else if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
-        all.push_back(v);
-        if (v->kind == Kind::String) s.strings.push_back(v->op == Op::ConstString ? v->text : "");
-        // Where any strings come in rows, "" in the site stands for the next row: an empty one among them needs its own.
-        const bool untyped =
-            (a.kind == ExprKind::Member || a.kind == ExprKind::Method || a.kind == ExprKind::Index) && a.type.base == Base::Void;
-        if (v->op != Op::ConstString || (v->text.empty() && op.section == "Strings"))
-            addArgument(s, args, v, untyped ? typeOfMember(a) : a.type);
+        if (p.output && i < fixed) output(*e.args[i], p.name);
+        else argument(*e.args[i], p);
     }
-    if (Inst* c = foldString(op.name, all)) return c;
-    if (Inst* heard = nullptr;
-        op.name == "displacement" && !all.empty() && all[0]->op == Op::ConstString && heardDisplacement(e, all[0]->text, heard))
-        return heard;
-    place_ = e.place;
+}
+
+/// How far a coordinate goes from one sample to the next, along u or v.
+Inst* Builder::ServiceCall::footprint(Inst* v, const char* size, Op derivative) {
+    Inst* step = b.coerce(b.global(size, Base::Float), v->kind);
+    return isConst(step, 0.0f) ? b.zero(v->kind) : b.emit(Op::Mul, v->kind, {b.emit(derivative, v->kind, {v}), step});
+}
+
+void Builder::ServiceCall::footprints() {
     const Type real{Base::Float, 0}, vector{Base::Vector, 0};
-    // Footprints: how far the coordinates go from one sample to the next, along u (x) and along v (y).
-    const auto footprint = [&](Inst* v, const char* size, Op d) {
-        Inst* step = coerce(global(size, Base::Float), v->kind);
-        return isConst(step, 0.0f) ? zero(v->kind) : emit(Op::Mul, v->kind, {emit(d, v->kind, {v}), step});
-    };
     const Footprint& over = op.footprint;
+    const auto& all = positional;
     if (over.of == Footprint::Of::Surface && (all.size() == over.first || all.size() == over.first + 2)) {
         const bool given = all.size() > over.first;
-        Inst* const st[] = {given ? all[over.first] : global("s", Base::Float),
-                            given ? all[over.first + 1] : global("t", Base::Float)};
+        Inst* const st[] = {given ? all[over.first] : b.global("s", Base::Float),
+                            given ? all[over.first + 1] : b.global("t", Base::Float)};
         for (Inst* c : st)
-            if (!given) addArgument(s, args, c, real);
+            if (!given) addArgument(site, args, c, real);
         for (int d = 0; d < 2; ++d)
-            for (Inst* c : st) addArgument(s, args, footprint(c, d == 0 ? "du" : "dv", d == 0 ? Op::Du : Op::Dv), real);
-        if (over.marks && !given) addArgument(s, args, constant(1), real);
+            for (Inst* c : st) addArgument(site, args, footprint(c, d == 0 ? "du" : "dv", d == 0 ? Op::Du : Op::Dv), real);
+        if (over.marks && !given) addArgument(site, args, b.constant(1), real);
     }
     if (over.of == Footprint::Of::Space && all.size() == over.count) {
-        addArgument(s, args, footprint(all[over.first], "du", Op::Du), vector);
-        addArgument(s, args, footprint(all[over.first], "dv", Op::Dv), vector);
+        addArgument(site, args, footprint(all[over.first], "du", Op::Du), vector);
+        addArgument(site, args, footprint(all[over.first], "dv", Op::Dv), vector);
     }
-    if (kind == Op::Request && op.name == "ambient") addArgument(s, args, global("N", Base::Normal), {Base::Normal, 0});
+}
+
+void Builder::ServiceCall::arrayPair(const NamedArg& p) {
+    Inst* from = b.array(*p.value);
+    b.refuseLonger(from, p.place, "\"" + p.name + "\" of " + op.name + "()");
+    for (int n = 0; n < b.arrayLength(from); ++n) {
+        addPair(site, p.name + "[" + std::to_string(n) + "]", "");
+        addArgument(site, args, b.load(from, n), p.value->type.element());
+    }
+}
+
+void Builder::ServiceCall::pair(const NamedArg& p) {
+    if (p.output) return output(*p.value, p.name);
+    if (p.value->type.array) return arrayPair(p);
+    const auto known = std::find_if(op.optional.rbegin(), op.optional.rend(), [&](const auto& o) { return o.name == p.name; });
+    const Type* wanted = known == op.optional.rend() ? nullptr : &known->type;
+    Inst* v = b.expr(*p.value);
+    if (wanted && (wanted->base == Base::String) == (v->kind == Kind::String)) v = b.coerce(v, wanted->element());
+    else if (v->kind == Kind::Bool) v = b.coerce(v, Kind::Float);
+    if (kind == Op::Request && op.name == "subsurface" && p.name == "irradiance") {
+        b.enters(v);
+        return mark(kPairEntering);
+    }
+    if (v->op == Op::ConstString && v->text.empty()) return; // every string's default means the same as its absence
+    addPair(site, args, p.name, v, wanted ? wanted->element() : p.value->type);
+}
+
+void Builder::ServiceCall::pairs() {
+    if (kind == Op::Request && op.name == "ambient") addArgument(site, args, b.global("N", Base::Normal), {Base::Normal, 0});
     if (e.channel) {
-        s.names.push_back("channel");
-        s.pairStrings.push_back("");
-        addArgument(s, args, expr(*e.channel, Kind::Float), real);
+        addPair(site, "channel", "");
+        addArgument(site, args, b.expr(*e.channel, Kind::Float), {Base::Float, 0});
     }
-    for (const NamedArg& p : e.pairs) {
-        if (!p.value || ofRaysOnly(e, p.name)) continue;
-        if (p.output) {
-            output(*p.value, p.name);
-            continue;
-        }
-        const OptionalParameter* known = nullptr;
-        for (const OptionalParameter& o : op.optional)
-            if (o.name == p.name) known = &o;
-        if (p.value->type.array) {
-            Inst* from = array(*p.value);
-            refuseLonger(from, p.place, "\"" + p.name + "\" of " + op.name + "()");
-            for (int n = 0; n < arrayLength(from); ++n) {
-                s.names.push_back(p.name + "[" + std::to_string(n) + "]");
-                s.pairStrings.push_back("");
-                addArgument(s, args, emit(Op::ArrayLoad, from->element, {from, constant(static_cast<float>(n))}),
-                            p.value->type.element());
-            }
-            continue;
-        }
-        Inst* v = expr(*p.value);
-        if (known && (known->type.base == Base::String) == (v->kind == Kind::String)) v = coerce(v, known->type.element());
-        else if (v->kind == Kind::Bool) v = coerce(v, Kind::Float);
-        if (kind == Op::Request && op.name == "subsurface" && p.name == "irradiance") {
-            enters(v);
-            mark(kPairEntering);
-            continue;
-        }
-        if (v->op == Op::ConstString && v->text.empty()) continue; // every string's default means the same as its absence
-        s.names.push_back(p.name);
-        s.pairStrings.push_back(v->op == Op::ConstString ? v->text : "");
-        if (v->op != Op::ConstString) addArgument(s, args, v, known ? known->type.element() : p.value->type);
-    }
-    if (kind == Op::Request && op.name == "subsurface" && options_.light == kEntering) return zero(whole);
+    for (const NamedArg& p : e.pairs)
+        if (p.value && !b.ofRaysOnly(e, p.name)) pair(p);
+}
+
+/// Pairs that the shader does not write, for the renderer.
+void Builder::ServiceCall::hiddenPairs() {
     // Lights that the rays or the samples of this call meet ask for outputs as they are now.
-    static const std::set<std::string> kLit = {"diffuse", "specular", "specularstd", "phong", "trace"};
-    if (kind == Op::Request && kLit.count(op.name))
-        for (const auto& [name, parameter] : messageSlots_) {
-            Inst* v = get(parameter.first);
-            s.names.push_back(PairName::surface(name).text());
-            s.pairStrings.push_back("");
-            addArgument(s, args, v, parameter.second);
+    static constexpr std::string_view kLit[] = {"diffuse", "specular", "specularstd", "phong", "trace"};
+    if (kind == Op::Request && isOneOf(kLit, op.name))
+        for (const auto& [name, parameter] : b.messageSlots_) {
+            addPair(site, PairName::surface(name).text(), "");
+            addArgument(site, args, b.get(parameter.first), parameter.second);
         }
-    if (quiet_ > 0 && (op.name == "printf" || op.name == "print")) return constant(0);
-    if (constructing_ > 0 && (op.name == "printf" || op.name == "print")) mark(kPairOnce); // printlog.h
-    if (part >= 0) {
-        s.names.push_back(kPairPart);
-        s.pairStrings.push_back(std::to_string(part));
-    }
+    if (b.constructing_ > 0 && (op.name == "printf" || op.name == "print")) mark(kPairOnce); // printlog.h
+    if (part >= 0) addPair(site, kPairPart, std::to_string(part));
     if (points) mark(kPairPoints);
     // A uniform variable takes no varying parameter of another shader (services/dispatch.cpp).
-    const auto isUniform = [](const Expr* l) {
-        while (l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
-        return l->symbol && l->symbol->storage == Storage::Uniform;
-    };
-    static const std::set<std::string> kShaders = {"surface",  "displacement", "atmosphere",
-                                                   "incident", "opposite",     "lightsource"};
-    if (kShaders.count(op.name) && !received.empty() && isUniform(received[0].first.to)) mark(kPairUniform);
-    static const std::set<std::string> kOfTheTurn = {"lightsource", "attribute", "shadername"};
-    if (lightDepth_ == 0 && kOfTheTurn.count(op.name)) { // there is no light to ask about
-        if (op.name == "lightsource" && shader_.kind != ShaderKind::Light)
-            report(e.place, msg::kOutsideIlluminance("lightsource"));
+    static constexpr std::string_view kShaders[] = {"surface",  "displacement", "atmosphere",
+                                                    "incident", "opposite",     "lightsource"};
+    if (isOneOf(kShaders, op.name) && !received.empty() && isUniform(received[0].first.to)) mark(kPairUniform);
+    static constexpr std::string_view kOfTheTurn[] = {"lightsource", "attribute", "shadername"};
+    if (b.lightDepth_ == 0 && isOneOf(kOfTheTurn, op.name)) { // there is no light to ask about
+        if (op.name == "lightsource" && b.shader_.kind != ShaderKind::Light)
+            b.report(e.place, msg::kOutsideIlluminance("lightsource"));
         mark(kPairOutside);
     }
-    place_ = e.place;
-    const bool message = op.section == "Messages" && !s.resultKinds.empty() && s.resultNames[0].empty();
-    const std::vector<Inst*> r = call(kind, std::move(s), std::move(args));
-    Inst* found = message && !received.empty() ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
-    // What a file has nothing for stays as it was.
-    Inst* read = op.name == "texture3d" && kind == Op::Service ? emit(Op::NotEqual, Kind::Bool, {r[0], constant(0)}) : nullptr;
+}
+
+/// `read`: what was read is there; else the variable stays as it was. Null: always.
+void Builder::ServiceCall::store(const Out& o, std::span<Inst* const> results, Inst* read) {
     const auto either = [&](Inst* v, const auto& old) {
-        return read ? emit(Op::Select, v->kind, {read, v, coerce(old(), v->kind)}) : v;
+        return read ? b.emit(Op::Select, v->kind, {read, v, b.coerce(old(), v->kind)}) : v;
     };
-    for (const auto& [receiver, first] : received)
-        receive(receiver, std::span(r).subspan(static_cast<size_t>(first), static_cast<size_t>(receiver.rows)), found);
-    for (const Out& o : outs) {
-        if (o.lvalue->type.array) {
-            Inst* a = array(*o.lvalue);
-            for (int n = 0; n < o.count && a->op == Op::ArrayNew; ++n) {
-                Inst* at = constant(static_cast<float>(o.at + n));
-                Inst* v = either(r[static_cast<size_t>(o.first + n)], [&] { return emit(Op::ArrayLoad, a->element, {a, at}); });
-                emit(Op::ArrayStore, Kind::None, {a, at, v});
-            }
-            continue;
-        }
-        const Held held(*this, *o.lvalue);
-        Inst* v = r[static_cast<size_t>(o.first)];
-        assign(*o.lvalue, either(v, [&] { return expr(*o.lvalue); }));
+    if (!o.lvalue->type.array) {
+        const Held held(b, *o.lvalue);
+        return b.assign(*o.lvalue, either(results[0], [&] { return b.expr(*o.lvalue); }));
     }
-    return whole != Kind::None && !r.empty() ? r[0] : constant(0);
+    Inst* a = b.array(*o.lvalue);
+    for (int n = 0; n < o.count && a->op == Op::ArrayNew; ++n) {
+        Inst* at = b.constant(o.at + n);
+        Inst* v = either(results[static_cast<size_t>(n)], [&] { return b.emit(Op::ArrayLoad, a->element, {a, at}); });
+        b.emit(Op::ArrayStore, Kind::None, {a, at, v});
+    }
+}
+
+/// The instruction, and its results in the variables.
+Inst* Builder::ServiceCall::finish() {
+    b.place_ = e.place;
+    const bool message = op.section == "Messages" && !site.resultKinds.empty() && site.resultNames[0].empty();
+    const std::vector<Inst*> r = b.call(kind, std::move(site), std::move(args));
+    const auto from = [&](int first, int count) {
+        return std::span(r).subspan(static_cast<size_t>(first), static_cast<size_t>(count));
+    };
+    Inst* found = message && !received.empty() ? b.isNot0(r[0]) : nullptr;
+    Inst* read = op.name == "texture3d" && kind == Op::Service ? b.isNot0(r[0]) : nullptr;
+    for (const auto& [receiver, first] : received) b.receive(receiver, from(first, receiver.rows), found);
+    for (const Out& o : outs) store(o, from(o.first, o.count), read);
+    return whole != Kind::None && !r.empty() ? r[0] : b.constant(0);
+}
+
+Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
+    ServiceCall c{*this, e, kind, part, points};
+    c.begin();
+    c.arguments();
+    if (Inst* folded = foldString(c.op.name, c.positional)) return folded;
+    if (c.op.name == "displacement" && !c.positional.empty() && c.positional[0]->op == Op::ConstString)
+        if (Inst* heard = nullptr; heardDisplacement(e, c.positional[0]->text, heard)) return heard;
+    place_ = e.place;
+    c.footprints();
+    c.pairs();
+    if (kind == Op::Request && c.op.name == "subsurface" && options_.light == kEntering) return zero(c.whole);
+    if (quiet_ > 0 && (c.op.name == "printf" || c.op.name == "print")) return constant(0);
+    c.hiddenPairs();
+    return c.finish();
 }
 
 } // namespace alpenglow::rsl::ir

@@ -12,7 +12,7 @@ namespace alpenglow::rsl::ir {
 
 /// Value text of KernelOptions::stringParameters for a numeric parameter: one number, or three.
 Inst* Builder::constantParameter(const Symbol& s, const std::string& text) {
-    if (s.type.base == Base::String) return leaves_.string(text);
+    if (isStringLike(s.type.base)) return leaves_.string(text);
     std::vector<float> numbers;
     const char* p = text.c_str();
     for (char* end = nullptr;; p = end) {
@@ -102,7 +102,7 @@ Inst* Builder::ownValue(const ShaderParameter& p) {
     if (type.array) type.array = std::max(1, length); // storage
     if (Inst* v = connectedParameter(s)) return v;
     if (const auto& over = options_.varyingParameters;
-        type == Type{Base::String, 0} && std::find(over.begin(), over.end(), s.name) != over.end()) {
+        storedType(type) == Type{Base::String, 0} && std::find(over.begin(), over.end(), s.name) != over.end()) {
         // The primitive has a variable of this name, which counts more.
         Site site;
         site.op = "getvar";
@@ -113,7 +113,7 @@ Inst* Builder::ownValue(const ShaderParameter& p) {
         site.strings = {s.name};
         return call(Op::Service, std::move(site), {})[1];
     }
-    if (type.array > 0 && type.base == Base::String) {
+    if (type.array > 0 && isStringLike(type.base)) {
         if (Inst* a = constantTexts(s.name, type.array, options_.stringParameters)) {
             noteTexts(a, s, length, options_.stringParameters);
             return a;
@@ -123,7 +123,7 @@ Inst* Builder::ownValue(const ShaderParameter& p) {
             if (name == s.name)
                 if (Inst* c = constantParameter(s, value)) return c;
     }
-    if (type == Type{Base::String, 0} && (!p.defaultValue || p.defaultValue->kind == ExprKind::String))
+    if (storedType(type) == Type{Base::String, 0} && (!p.defaultValue || p.defaultValue->kind == ExprKind::String))
         return leaves_.string(p.defaultValue ? p.defaultValue->text : "");
     const auto& computed = options_.computedParameters;
     if (std::find(computed.begin(), computed.end(), s.name) != computed.end()) return defaultValue(p, length);
@@ -181,13 +181,54 @@ bool Builder::buildDefaults(const std::vector<ParameterValue>& given) {
         const int n = v->kind == Kind::Array ? arrayLength(v) : 1;
         for (int e = 0; e < n; ++e) {
             Inst* value = v->kind == Kind::Array ? emit(Op::ArrayLoad, v->element, {v, constant(static_cast<float>(e))}) : v;
-            k_.outputs.push_back(
-                {OutputName::parameterOf(s->name, v->kind == Kind::Array ? e : -1).text(), value->kind, s->type.element()});
+            k_.outputs.push_back({OutputName::parameterOf(s->name, v->kind == Kind::Array ? e : -1).text(), value->kind,
+                                  storedType(s->type.element())});
             emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
         }
     }
     k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
     return !failed_;
+}
+
+Inst* Builder::initialGlobal(const std::string& name, Type type) {
+    const ShaderKind kind = shader_.kind;
+    if (kind == ShaderKind::Surface && name == "Ci") return zero(Kind::Triple);
+    if (kind == ShaderKind::Surface && name == "Oi") return input("Os", {Base::Color, 0}, false);
+    if (kind == ShaderKind::Light && (name == "Cl" || name == "Ol"))
+        return leaves_.constant(Kind::Triple, name == "Cl" ? 0.0f : 1.0f);
+    bool uniform = false;
+    for (const GlobalVariable& g : globalVariables(kind))
+        if (name == g.name) uniform = g.uniform;
+    Inst* i = input(name, type, uniform);
+    // Uniform in RSL, where a grid has one time and one eye. Points of a batch each have their own.
+    if (name == "time" || name == "dtime" || name == "E") k_.inputs[size_t(i->index)].uniform = false;
+    return i;
+}
+
+/// Storage for the elements of an array input, which is read-only.
+Inst* Builder::copyOfInput(Inst* array, Base base) {
+    Inst* copy = newArray(base, arrayLength(array));
+    for (int e = 0; e < arrayLength(array); ++e) {
+        Inst* at = constant(e);
+        emit(Op::ArrayStore, Kind::None, {copy, at, emit(Op::ArrayLoad, array->element, {array, at})});
+    }
+    if (given_.count(array)) given_[copy] = given_[array];
+    return copy;
+}
+
+/// Gives the parameters their values. `assigned`: slots that the shader sets.
+void Builder::bindParameters(const std::set<int>& assigned) {
+    const auto& asked = options_.messages;
+    for (const ShaderParameter& p : shader_.parameters) {
+        const Symbol& s = *p.symbol;
+        place_ = s.place;
+        const int n = slot(p.symbol);
+        Inst* v = parameterValue(p);
+        value(n) = v->op == Op::ArrayInput && assigned.count(n) ? copyOfInput(v, s.type.base) : v;
+        if (s.output && !s.type.array && !isStringLike(s.type.base) &&
+            std::find(asked.begin(), asked.end(), s.name) != asked.end())
+            messageSlots_[s.name] = {n, s.type};
+    }
 }
 
 bool Builder::buildShader() {
@@ -204,34 +245,7 @@ bool Builder::buildShader() {
     for (const auto& heard : options_.stringParameters)
         if (const InputName told = InputName::parse(heard.first); told.member)
             if (const Symbol* s = ownMember(shader_, told.name)) assigned.insert(slot(s));
-    for (const ShaderParameter& p : shader_.parameters) {
-        place_ = p.symbol->place;
-        const int n = slot(p.symbol);
-        Inst* v = parameterValue(p);
-        if (v->op == Op::ArrayInput && assigned.count(n)) { // inputs are read-only: a copy takes the stores
-            Inst* copy = newArray(p.symbol->type.base, arrayLength(v));
-            for (int e = 0; e < arrayLength(v); ++e) {
-                Inst* at = constant(static_cast<float>(e));
-                emit(Op::ArrayStore, Kind::None, {copy, at, emit(Op::ArrayLoad, v->element, {v, at})});
-            }
-            if (given_.count(v)) given_[copy] = given_[v];
-            v = copy;
-        }
-        env_[static_cast<size_t>(n)] = v;
-        const Symbol& parameter = *p.symbol;
-        const auto& asked = options_.messages;
-        if (parameter.output && !parameter.type.array && parameter.type.base != Base::String &&
-            std::find(asked.begin(), asked.end(), parameter.name) != asked.end())
-            messageSlots_[parameter.name] = {n, parameter.type};
-    }
-    // Zero on every way through conditions (a block puts Cl back to what it was, so both sides of an if may give zero).
-    const std::function<bool(const Inst*)> isZero = [&](const Inst* v) {
-        if (isConst(v)) return std::all_of(v->numbers.begin(), v->numbers.end(), [](float f) { return f == 0; });
-        if (v->op != Op::Result || v->args[0]->op != Op::If) return false;
-        const Inst* branch = v->args[0];
-        return std::all_of(branch->regions.begin(), branch->regions.end(),
-                           [&](const Region& r) { return isZero(r.yields[static_cast<size_t>(v->index)]); });
-    };
+    bindParameters(assigned);
     lightBlocks_.clear();
     blockRan_ = newSlot(boolean(false));
     if (shader_.kind == ShaderKind::Light && shader_.body) findBlocks(*shader_.body);
@@ -240,130 +254,8 @@ bool Builder::buildShader() {
     if (shader_.body && shader_.object) objectBody(opacityOnly);
     else if (shader_.body) statement(*shader_.body);
     place_ = shader_.place;
-
-    const auto output = [&](const std::string& name, Inst* value, Type type) {
-        if (value->kind == Kind::Array) {
-            refuseLonger(value, shader_.place, "the output '" + name + "'");
-            const int n = lengths(value) ? value->index : given_.count(value) ? given_.at(value) : arrayLength(value);
-            for (int e = 0; e < n; ++e) {
-                Inst* v = emit(Op::ArrayLoad, value->element, {value, constant(static_cast<float>(e))});
-                k_.outputs.push_back({name + "[" + std::to_string(e) + "]", v->kind, type.element()});
-                emit(Op::Output, Kind::None, {v}, static_cast<int>(k_.outputs.size()) - 1);
-            }
-            return;
-        }
-        k_.outputs.push_back({name, value->kind, type});
-        emit(Op::Output, Kind::None, {value}, static_cast<int>(k_.outputs.size()) - 1);
-    };
-    const Type color{Base::Color, 0}, vector{Base::Vector, 0}, real{Base::Float, 0};
-    std::vector<std::string> wanted = options_.outputs;
-    const bool light = shader_.kind == ShaderKind::Light;
-    if (light) {
-        k_.facts.ambientLight = lightBlocks_.empty();
-        for (const LightBlock& b : lightBlocks_)
-            k_.facts.blocks.push_back(!b.solar                ? "illuminate"
-                                      : b.stmt->exprs.empty() ? kBlockSky
-                                      : b.cone                ? kBlockCone
-                                                              : kBlockSolar);
-        // Where no block has run, Cl is ambient light.
-        const auto cl = globals_.find("Cl");
-        const Inst* ran = get(blockRan_);
-        const bool always = isConst(ran) && ran->numbers[0] != 0;
-        if (!lightBlocks_.empty() && !always && cl != globals_.end() && !isZero(get(cl->second)))
-            k_.facts.blocks.push_back(kBlockOutside);
-    }
-    if (wanted.empty()) {
-        switch (shader_.kind) {
-        case ShaderKind::Displacement:
-            wanted = {"P", "N"};
-            break;
-        case ShaderKind::Transformation:
-            wanted = {"P"};
-            break;
-        case ShaderKind::Imager:
-            wanted = {"Ci", "Oi", "alpha"};
-            break;
-        case ShaderKind::Light:
-            if (lightBlocks_.empty()) wanted = {"Cl", "Ol"};
-            for (size_t b = 0; b < lightBlocks_.size(); ++b)
-                for (const char* n : {"L", "Cl", "Ol", "lit"})
-                    wanted.push_back(OutputName::ofBlock(n, static_cast<int>(b)).text());
-            if (!k_.facts.blocks.empty() && k_.facts.blocks.back() == kBlockOutside)
-                wanted.push_back(OutputName::ofBlock("Cl", static_cast<int>(lightBlocks_.size())).text());
-            break;
-        default:
-            wanted = {"Ci", "Oi"};
-        }
-    }
-    for (const std::string& name : wanted) {
-        const OutputName asked = OutputName::parse(name);
-        if (light && !lightBlocks_.empty()) {
-            bool found = false;
-            for (size_t b = 0; b < lightBlocks_.size(); ++b) {
-                const LightBlock& l = lightBlocks_[b];
-                if (asked != OutputName::ofBlock(asked.name, static_cast<int>(b))) continue;
-                if (asked.name == "L") output(name, get(l.L), vector), found = true;
-                if (asked.name == "Cl") output(name, get(l.only ? globals_.at("Cl") : l.Cl), color), found = true;
-                if (asked.name == "Ol") output(name, get(l.only ? globals_.at("Ol") : l.Ol), color), found = true;
-                if (asked.name == "lit") output(name, get(l.lit), real), found = true;
-            }
-            if (asked == OutputName::ofBlock("Cl", static_cast<int>(lightBlocks_.size())) &&
-                k_.facts.blocks.back() == kBlockOutside) {
-                output(name, emit(Op::Select, Kind::Triple, {get(blockRan_), zero(Kind::Triple), get(globals_.at("Cl"))}), color);
-                continue;
-            }
-            if (found) continue;
-        }
-        if (Type left; Inst* v = leftBehind(name, left)) {
-            output(name, v, left);
-            continue;
-        }
-        bool found = false;
-        if (name.back() == ']') {
-            const std::string& plain = asked.name;
-            Inst* list = nullptr;
-            for (const ShaderParameter& p : shader_.parameters)
-                if (p.symbol->name == plain && p.symbol->type.array && (p.symbol->output || asked.parameter))
-                    list = get(slot(p.symbol));
-            if (const auto* c = channelNamed(plain); !list && c && c->second.array) list = get(c->first);
-            const int at = asked.element, length = !list ? 0 : lengths(list) ? list->index : arrayLength(list);
-            if (at >= 0 && at < length)
-                output(name, emit(Op::ArrayLoad, list->element, {list, constant(static_cast<float>(at))}), {Base::Float, 0});
-            continue;
-        }
-        for (const ShaderParameter& p : shader_.parameters)
-            for (const Op d : {Op::Du, Op::Dv})
-                if (asked ==
-                    OutputName::parameterOf(p.symbol->name, -1, d == Op::Du ? OutputName::What::Du : OutputName::What::Dv))
-                    if (Inst* v = get(slot(p.symbol)); v->kind == Kind::Float || v->kind == Kind::Triple)
-                        output(name, emit(d, v->kind, {v}), p.symbol->type), found = true;
-        for (const ShaderParameter& p : shader_.parameters)
-            if (asked == OutputName::parameterOf(p.symbol->name) || (p.symbol->output && name == p.symbol->name)) {
-                output(name, get(slot(p.symbol)), p.symbol->type);
-                found = true;
-                break;
-            }
-        if (found) continue;
-        if (Inst* given = channelGiven(name)) {
-            output(name, given, real);
-            continue;
-        }
-        if (Type type; Inst* v = channelValue(name, type)) {
-            output(name, v, type);
-            continue;
-        }
-        for (const GlobalVariable& g : globalVariables(shader_.kind))
-            if (name == g.name) {
-                const auto it = globals_.find(name);
-                output(name, it == globals_.end() ? initialGlobal(name, g.type) : get(it->second), g.type);
-                break;
-            } else if (asked == OutputName::du(g.name) || asked == OutputName::dv(g.name)) { // how it changes, at the end
-                const auto it = globals_.find(g.name);
-                Inst* value = it == globals_.end() ? initialGlobal(g.name, g.type) : get(it->second);
-                output(name, emit(asked.what == OutputName::What::Du ? Op::Du : Op::Dv, value->kind, {value}), g.type);
-                break;
-            }
-    }
+    if (shader_.kind == ShaderKind::Light) noteBlocks();
+    for (const std::string& name : options_.outputs.empty() ? usualOutputs() : options_.outputs) output(name);
     k_.body.body.insert(k_.body.body.begin(), functions_.begin(), functions_.end());
     k_.facts.writes.assign(writes_.begin(), writes_.end());
     forEach(k_.body, [&](Inst* i) { k_.facts.lightLoops = k_.facts.lightLoops || i->op == Op::LightLoop; });

@@ -1,54 +1,11 @@
 // Statements: assignments become values, jumps become guards.
+#include "rsl/front/visit.h"
+#include "rsl/front/writes.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
 #include <limits>
 
 namespace alpenglow::rsl::ir {
-
-std::vector<Inst*> Builder::branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes,
-                                   const std::function<std::vector<Inst*>()>& no) {
-    if (isConst(condition)) return condition->numbers[0] != 0 ? yes() : no();
-    Inst* inst = k_.make(Op::If, Kind::None, {condition});
-    inst->place = keptPlace(place_);
-    inst->regions.resize(2);
-    const size_t mark = log_.size();
-    std::map<int, Inst*> changed[2];
-    std::vector<Inst*> extra[2];
-    for (int side = 0; side < 2; ++side) {
-        Region* saved = region_;
-        region_ = &inst->regions[static_cast<size_t>(side)];
-        extra[side] = side == 0 ? yes() : no();
-        region_ = saved;
-        for (size_t n = mark; n < log_.size(); ++n) changed[side][log_[n].first] = env_[static_cast<size_t>(log_[n].first)];
-        while (log_.size() > mark) {
-            env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
-            log_.pop_back();
-        }
-    }
-    region_->body.push_back(inst);
-    const auto yield = [&](Inst* a, Inst* b) {
-        if (a == b) return a;
-        inst->regions[0].yields.push_back(a);
-        inst->regions[1].yields.push_back(b);
-        inst->results.push_back(a->kind);
-        return emit(Op::Result, a->kind, {inst}, static_cast<int>(inst->results.size()) - 1);
-    };
-    std::set<int> slots;
-    for (const auto& side : changed)
-        for (const auto& [n, v] : side) slots.insert(n);
-    for (int n : slots) {
-        Inst* before = env_[static_cast<size_t>(n)];
-        const auto value = [&](int side) {
-            const auto it = changed[side].find(n);
-            return it == changed[side].end() ? before : it->second;
-        };
-        // Without a value before, the variable lives inside the branch only; array names never change what they stand for.
-        if (before && before->kind != Kind::Array && value(0)->kind == value(1)->kind) set(n, yield(value(0), value(1)));
-    }
-    std::vector<Inst*> out;
-    for (size_t n = 0; n < extra[0].size(); ++n) out.push_back(yield(extra[0][n], extra[1][n]));
-    return out;
-}
 
 Inst* Builder::alive() {
     const Frame& f = frames_.back();
@@ -63,7 +20,7 @@ Inst* Builder::alive() {
 static bool plainDeclarations(const std::vector<StmtPtr>& list, size_t from) {
     return std::all_of(list.begin() + static_cast<ptrdiff_t>(from), list.end(), [](const StmtPtr& s) {
         return !s->definition && std::all_of(s->declarators.begin(), s->declarators.end(), [](const Stmt::Declarator& d) {
-            return d.symbol->type.array == 0 && d.symbol->type.base != Base::String && d.symbol->storage != Storage::Uniform;
+            return d.symbol->type.array == 0 && !isStringLike(d.symbol->type.base) && d.symbol->storage != Storage::Uniform;
         });
     });
 }
@@ -86,22 +43,18 @@ size_t Builder::statements(const std::vector<StmtPtr>& list, size_t from, int de
             for (size_t later = n; later < list.size(); ++later)
                 for (const Stmt::Declarator& d : list[later]->declarators) set(slot(d.symbol), zero(kindOf(d.symbol->type)));
         size_t reached = list.size();
-        branch(
-            live,
-            [&] {
-                // Inside, the flags are known to be off: no further guards until one is set again.
-                Frame& f = frames_.back();
-                if (!f.loops.empty()) {
-                    set(f.loops.back().broken, boolean(false));
-                    set(f.loops.back().continued, boolean(false));
-                } else {
-                    set(f.returned, boolean(false));
-                }
-                const int inside = parted ? 1 : depth == 0 ? std::numeric_limits<int>::min() : depth + 1;
-                reached = statements(list, n, inside);
-                return std::vector<Inst*>{};
-            },
-            [] { return std::vector<Inst*>{}; });
+        when(live, [&] {
+            // Inside, the flags are known to be off: no further guards until one is set again.
+            Frame& f = frames_.back();
+            if (!f.loops.empty()) {
+                set(f.loops.back().broken, boolean(false));
+                set(f.loops.back().continued, boolean(false));
+            } else {
+                set(f.returned, boolean(false));
+            }
+            const int inside = parted ? 1 : depth == 0 ? std::numeric_limits<int>::min() : depth + 1;
+            reached = statements(list, n, inside);
+        });
         if (depth != 0) return reached;
         n = reached;
     }
@@ -150,15 +103,10 @@ void Builder::statement(const Stmt& s) {
         return;
     case StmtKind::If: {
         Inst* c = condition(*s.condition);
-        branch(
-            c,
-            [&] {
-                statements(s.body, 0);
-                return std::vector<Inst*>{};
-            },
+        when(
+            c, [&] { statements(s.body, 0); },
             [&] {
                 if (s.elseBody) statement(*s.elseBody);
-                return std::vector<Inst*>{};
             });
         return;
     }
@@ -203,10 +151,9 @@ namespace {
 
 /// Whether the statement may jump: any break, continue or return below it, functions excluded.
 bool mayJump(const Stmt& s) {
-    if (s.kind == StmtKind::Break || s.kind == StmtKind::Continue || s.kind == StmtKind::Return) return true;
-    for (const StmtPtr& b : s.body)
-        if (b && mayJump(*b)) return true;
-    return s.elseBody && mayJump(*s.elseBody);
+    bool found = s.kind == StmtKind::Break || s.kind == StmtKind::Continue || s.kind == StmtKind::Return;
+    front::eachBody(s, [&](const StmtPtr& b) { found = found || mayJump(*b); });
+    return found;
 }
 
 } // namespace
@@ -257,116 +204,70 @@ void Builder::turns(std::set<int>& assigned, bool jumps, const Turns& t, const P
     if (t.begin) t.begin();
     if (jumps) assigned.insert(flags.broken);
 
-    std::vector<int> carried;
     Inst* inst = k_.make(Op::Loop, Kind::None);
     inst->place = keptPlace(place);
     inst->regions.resize(2);
-    for (int n : assigned) {
-        const Symbol* s = symbols_[static_cast<size_t>(n)];
-        if (s && s->origin == Symbol::Origin::Global) get(n);
-        Inst* v = env_[static_cast<size_t>(n)];
-        if (!v || v->kind == Kind::Array) continue;
-        carried.push_back(n);
-        inst->args.push_back(v);
-        inst->results.push_back(v->kind);
+    const std::vector<int> carried = carry(inst, assigned);
+    {
+        Region& r = inst->regions[0];
+        const Scope scope(*this, r);
+        enterTurn(inst, r, carried);
+        Inst* test = t.goesOn();
+        r.yields.push_back(emit(Op::And, Kind::Bool, {emit(Op::Not, Kind::Bool, {get(flags.broken)}), test}));
     }
-    const size_t mark = log_.size();
-    const auto enter = [&](Region& r) {
-        region_ = &r;
-        for (size_t c = 0; c < carried.size(); ++c) {
-            Inst* p = k_.make(Op::RegionParam, inst->results[c]);
-            p->index = static_cast<int>(c);
-            r.params.push_back(p);
-            set(carried[c], p);
-        }
-    };
-    const auto leave = [&](Region* back) {
-        region_ = back;
-        while (log_.size() > mark) {
-            env_[static_cast<size_t>(log_.back().first)] = log_.back().second;
-            log_.pop_back();
-        }
-    };
-    Region* saved = region_;
-    enter(inst->regions[0]);
-    Inst* test = t.goesOn();
-    test = emit(Op::And, Kind::Bool, {emit(Op::Not, Kind::Bool, {get(flags.broken)}), test});
-    inst->regions[0].yields.push_back(test);
-    leave(saved);
+    {
+        Region& r = inst->regions[1];
+        const Scope scope(*this, r);
+        enterTurn(inst, r, carried);
+        frames_.back().loops.push_back(flags);
+        set(flags.continued, boolean(false));
+        t.turn();
+        frames_.back().loops.pop_back();
+        if (t.next) when(emit(Op::Not, Kind::Bool, {get(flags.broken)}), t.next);
+        for (int n : carried) r.yields.push_back(get(n));
+    }
+    leaveLoop(inst, carried);
+}
 
-    enter(inst->regions[1]);
-    frames_.back().loops.push_back(flags);
-    set(flags.continued, boolean(false));
-    t.turn();
-    frames_.back().loops.pop_back();
-    const auto next = [&] {
-        t.next();
-        return std::vector<Inst*>{};
-    };
-    if (t.next) branch(emit(Op::Not, Kind::Bool, {get(flags.broken)}), next, [] { return std::vector<Inst*>{}; });
-    for (int n : carried) inst->regions[1].yields.push_back(get(n));
-    leave(saved);
-    region_->body.push_back(inst);
-    for (size_t c = 0; c < carried.size(); ++c) set(carried[c], emit(Op::Result, inst->results[c], {inst}, static_cast<int>(c)));
+/// Outputs of the kernel that a call sets by their names.
+void Builder::scanChannels(const Expr& call, std::set<int>& out) {
+    const std::string& op = call.shadeop->name;
+    if (op == "subsurface")
+        for (const int n : enteringSlots()) out.insert(n);
+    if (op != "outputchannel" && op != "writeaov") return;
+    if (call.args[0]->kind == ExprKind::String) {
+        if (const int n = channelSlot(call.args[0]->text, call.args[1]->type); n >= 0) out.insert(n);
+        return;
+    }
+    // The name is known when the call is built: any of them.
+    for (const auto& [name, channel] : channels_) out.insert(channel.first);
+    for (const ShaderParameter& p : shader_.parameters)
+        if (p.symbol->output && !p.symbol->type.array) out.insert(slot(p.symbol));
 }
 
 void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Function*>& seen) {
-    const auto lvalue = [&](const Expr* l) {
-        while (l && l->kind == ExprKind::Index && !l->args.empty()) l = l->args[0].get();
-        if (l && l->kind == ExprKind::Cast && !l->args.empty()) l = l->args[0].get();
-        if (l && l->kind == ExprKind::Variable && l->symbol) out.insert(slot(l->symbol));
+    const auto written = [&](const Expr& place) {
+        if (const Symbol* s = front::rootOf(place)) out.insert(slot(s));
     };
-    if (e.kind == ExprKind::Assign) lvalue(e.args[0].get());
     if (e.kind == ExprKind::Method) {
         for (size_t n = 1; n < e.args.size(); ++n)
-            if (mayFill(e, n)) lvalue(e.args[n].get());
+            if (mayFill(e, n)) written(*e.args[n]);
         scanMethod(e, out);
+    } else {
+        front::eachWritten(e, written);
     }
-    if (e.kind == ExprKind::ShadeopCall && e.signature)
-        for (size_t n = 0; n < e.args.size() && n < e.signature->parameters.size(); ++n)
-            if (e.signature->parameters[n].output) lvalue(e.args[n].get());
-    if (e.kind == ExprKind::ShadeopCall && e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov")) {
-        const bool literal = e.args[0]->kind == ExprKind::String;
-        if (literal) {
-            if (const int n = channelSlot(e.args[0]->text, e.args[1]->type); n >= 0) out.insert(n);
-        } else { // the name is known when the call is built: any of them
-            for (const auto& [name, channel] : channels_) out.insert(channel.first);
-            for (const ShaderParameter& p : shader_.parameters)
-                if (p.symbol->output && !p.symbol->type.array) out.insert(slot(p.symbol));
-        }
-    }
-    if (e.kind == ExprKind::ShadeopCall && e.shadeop && e.shadeop->name == "subsurface")
-        for (const int n : enteringSlots()) out.insert(n);
-    for (const NamedArg& p : e.pairs)
-        if (p.output && p.value) lvalue(p.value.get());
-    if (e.function) {
-        for (size_t n = 0; n < e.args.size() && n < e.function->parameters.size(); ++n)
-            if (e.function->parameters[n]->output) lvalue(e.args[n].get());
-        if (seen.insert(e.function).second && e.function->body) scanAssigned(*e.function->body, out, seen);
-    }
-    for (const ExprPtr& a : e.args)
-        if (a) scanAssigned(*a, out, seen);
-    for (const NamedArg& p : e.pairs)
-        if (p.value) scanAssigned(*p.value, out, seen);
-    for (const ExprPtr* p : {&e.space, &e.channel})
-        if (*p) scanAssigned(**p, out, seen);
+    if (e.kind == ExprKind::ShadeopCall && e.shadeop) scanChannels(e, out);
+    if (e.function && seen.insert(e.function).second && e.function->body) scanAssigned(*e.function->body, out, seen);
+    front::eachPart(e, [&](const Expr& x) { scanAssigned(x, out, seen); });
 }
 
 void Builder::scanAssigned(const Stmt& s, std::set<int>& out, std::set<const Function*>& seen) {
-    for (const StmtPtr& b : s.body)
-        if (b) scanAssigned(*b, out, seen);
-    if (s.elseBody) scanAssigned(*s.elseBody, out, seen);
-    for (const ExprPtr* p : {&s.condition, &s.init, &s.step, &s.value, &s.category})
-        if (*p) scanAssigned(**p, out, seen);
-    for (const ExprPtr& e : s.exprs)
-        if (e) scanAssigned(*e, out, seen);
-    for (const Stmt::Declarator& d : s.declarators)
-        if (d.init) scanAssigned(*d.init, out, seen);
-    for (const NamedArg& p : s.pairs)
-        if (p.value) {
-            scanAssigned(*p.value, out, seen);
-            if (p.output && p.value->kind == ExprKind::Variable && p.value->symbol) out.insert(slot(p.value->symbol));
-        }
+    // What stands inside first: slots are numbered in this order.
+    front::eachBody(s, [&](const StmtPtr& b) { scanAssigned(*b, out, seen); });
+    front::eachPart(s, [&](const Expr& e) { scanAssigned(e, out, seen); });
+    front::eachWritten(s, [&](const Expr& place) {
+        if (place.kind == ExprKind::Variable && place.symbol) out.insert(slot(place.symbol));
+    });
     for (const LightBlock& b : lightBlocks_)
         if (b.stmt == &s) out.insert({b.L, b.Cl, b.Ol, b.lit});
 }
@@ -374,12 +275,10 @@ void Builder::scanAssigned(const Stmt& s, std::set<int>& out, std::set<const Fun
 bool Builder::hasEffects(const Expr& e) {
     if (e.kind == ExprKind::Assign || e.kind == ExprKind::FunctionCall || e.kind == ExprKind::Method || e.function) return true;
     if (e.kind == ExprKind::ShadeopCall && (!e.shadeop || e.shadeop->lowering != Lowering::Runtime)) return true;
-    if (e.kind == ExprKind::ShadeopCall && e.signature)
-        for (const Parameter& p : e.signature->parameters)
-            if (p.output) return true;
-    for (const ExprPtr& a : e.args)
-        if (a && hasEffects(*a)) return true;
-    return false;
+    bool found = false;
+    front::eachWritten(e, [&](const Expr&) { found = true; });
+    front::eachPart(e, [&](const Expr& x) { found = found || hasEffects(x); });
+    return found;
 }
 
 } // namespace alpenglow::rsl::ir

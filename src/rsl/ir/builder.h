@@ -1,8 +1,7 @@
-// The builder's insides, shared by build*.cpp. Not for others.
+// Lowers the syntax tree to instructions, one subject a file: build*.cpp. Not for others.
 #pragma once
-#include "rsl/ir/build.h"
 #include "rsl/ir/complaint.h"
-#include "rsl/ir/edit.h"
+#include "rsl/ir/function_builder.h"
 #include "shadeops/distributions.h"
 #include <cmath>
 #include <deque>
@@ -16,7 +15,8 @@
 
 namespace alpenglow::rsl {
 struct Connected;
-}
+struct OutputName;
+} // namespace alpenglow::rsl
 
 namespace alpenglow::rsl::ir {
 
@@ -31,40 +31,20 @@ using DirectSet = std::set<std::tuple<int, int, int>>;
 /// A constant index in words, of whatever size.
 inline std::string indexText(float x) { return fmt::format("{:.9g}", std::trunc(x) + 0.f); }
 
-class Builder {
+class Builder : FunctionBuilder {
 public:
     Builder(Kernel& k, const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d, const DirectSet& direct)
-        : k_(k), program_(p), shader_(s), options_(o), diagnostics_(d), direct_(direct), leaves_(k) {}
+        : FunctionBuilder(k, p.files, o, d), program_(p), shader_(s), direct_(direct) {}
     bool buildShader();
     bool buildDefaults(const std::vector<ParameterValue>& given);
     Inst* givenValue(const Symbol&, const ParameterValue&);
     Inst* defaultValue(const ShaderParameter&, int length);
 
 private:
-    // build.cpp: instructions
-    Inst* emit(Op, Kind, std::vector<Inst*> args, int index = 0);
-    Inst* constant(float f) { return leaves_.constant(Kind::Float, f); }
-    Inst* boolean(bool b) { return leaves_.constant(Kind::Bool, b ? 1.0f : 0.0f); }
-    Inst* zero(Kind);
-    Inst* input(const std::string& name, Type type, bool uniform);
-    Inst* space(const std::string& from, const std::string& to);
-    /// A Runtime call; several results when `results` has more than one.
-    std::vector<Inst*> runtime(const std::string& symbol, std::vector<Inst*> args, std::vector<Kind> results);
-    Inst* runtime1(const std::string& symbol, std::vector<Inst*> args, Kind k) {
-        return runtime(symbol, std::move(args), {k})[0];
-    }
-    std::vector<Inst*> call(Op, Site, std::vector<Inst*> args);
-    Inst* coerce(Inst*, Kind);
-    Inst* coerce(Inst*, Type);
-    /// An error ends the build; the same warning is reported once a place.
-    void report(const Place&, const Raised&, std::string hint = {});
-
-    // build.cpp: variables
-    int slot(const Symbol*);
-    int newSlot(Inst* value);
-    Inst* get(int slot);
-    void set(int slot, Inst* value);
-    Inst* initialGlobal(const std::string& name, Type);
+    // build_shader.cpp
+    Inst* initialGlobal(const std::string& name, Type) override;
+    void bindParameters(const std::set<int>& assigned);
+    Inst* copyOfInput(Inst* array, Base);
     Inst* parameterValue(const ShaderParameter&);
     Inst* sentValue(const ShaderParameter&, Inst* usual, int room);
     Inst* ownValue(const ShaderParameter&);
@@ -72,10 +52,6 @@ private:
     Inst* constantTexts(const std::string& name, int length, std::span<const std::pair<std::string, std::string>> given);
 
     // build_stmt.cpp
-    using Code = std::function<void()>;
-    /// If with everything assigned in a branch yielded; extra values of the branches, too.
-    std::vector<Inst*> branch(Inst* condition, const std::function<std::vector<Inst*>()>& yes,
-                              const std::function<std::vector<Inst*>()>& no);
     size_t statements(const std::vector<StmtPtr>&, size_t from, int depth = 0);
     void statement(const Stmt&);
     void declare(const Stmt&);
@@ -108,6 +84,8 @@ private:
     int gathers_ = 0; ///< built so far
     struct GatherCall;
     GatherCall gatherCall(const Stmt&);
+    void gatherTurn(const Stmt&, GatherCall&, Inst* ray);
+    struct Illuminance; // build_illuminance.cpp
     void illuminance(const Stmt&);
     void lightBlock(const Stmt&);
     Inst* inCone(Inst* axis, Inst* angle);
@@ -117,6 +95,7 @@ private:
     Inst* alive();
     void scanAssigned(const Stmt&, std::set<int>& out, std::set<const Function*>& seen);
     void scanAssigned(const Expr&, std::set<int>& out, std::set<const Function*>& seen);
+    void scanChannels(const Expr& call, std::set<int>& out);
     bool hasEffects(const Expr&);
     /// Loop or LightLoop around `body`: `fixed` region parameters come before the carried ones.
     struct LoopFrame {
@@ -160,17 +139,22 @@ private:
     void copyArray(Inst* to, const Expr& from);
     Inst* both(const Expr&);
     Inst* binary(const Expr&, Inst* a, Inst* b);
-    Inst* dot(Inst*, Inst*);
-    Inst* cross(Inst*, Inst*);
-    Inst* multiply(Inst* a, Inst* b);
+    Inst* binary(const Expr&);
+    Inst* arrayElement(const Expr&);
+    void checkIndex(const Expr& index, const Inst* array, const Inst* at);
+    Inst* assignment(const Expr&);
+    Inst* tuple(const Expr&);
+    Inst* conditional(const Expr&);
+    Inst* sequence(const Expr&);
+
+    // build_spaces.cpp
+    /// The matrix from one named space to another, an input.
+    Inst* space(const std::string& from, const std::string& to);
     Inst* toSpace(const std::string& from, const std::string& to, Inst*, Base, const Place&);
-    Inst* colourSpace(const std::string& from, const std::string& to, Inst*);
     Inst* ownSpace(Inst* name);
     Inst* dynamicSpace(const char* op, Inst* from, Inst* to, Inst* value, Base);
-    Inst* transformBy(Inst* matrix, Inst* value, Base);
     Inst* inSpace(const Expr& space, Inst* value, Base);
     int arrayLength(const Inst* array) const;
-    Inst* newArray(Base, int length);
 
     // build_arrays.cpp: arrays that change their length
     struct Lengths {
@@ -185,13 +169,12 @@ private:
     Inst* resized(const Inst* array, Inst* wanted);
     void copyBehind(Inst* to, Inst* from, Inst* length);
     void refuseLonger(const Inst* array, const Place&, const std::string& where);
-    void countLoop(Inst* first, Inst* end, const std::function<void(Inst* at)>& each);
     int largestResize();
     bool grows(const Stmt::Declarator&);
     bool lengthKnown(const Inst* a) const {
         const Lengths* l = lengths(a);
         if (given_.count(a)) return false;
-        return !l || (env_[static_cast<size_t>(l->length)] && isConst(env_[static_cast<size_t>(l->length)]));
+        return !l || (value(l->length) && isConst(value(l->length)));
     }
     Inst* newResizable(Base, int length);
     int parameterLength(const ShaderParameter&, std::span<const std::pair<std::string, std::string>> given) const;
@@ -276,6 +259,7 @@ private:
     void connectElements(const Symbol&, Inst* array, const CoShader& of);
     Inst* forHandle(const Expr& handle, Kind, const std::function<Inst*(size_t)>& code,
                     const std::function<Inst*(Inst* handle)>& light = nullptr);
+    struct MethodCall; // build_methods.cpp
     static bool argumentsOf(const Function&, const Expr& call, std::vector<const Expr*>& given);
     const Function* methodOf(size_t instance, const Expr& call) const;
     const Symbol* memberOf(size_t instance, const std::string& name) const;
@@ -306,7 +290,6 @@ private:
     Receiver receiver(Site&, const Expr& to, const std::string& name);
     void receive(const Receiver&, std::span<Inst* const> values, Inst* found);
     Inst* readPrimitiveVariable(const Expr&);
-    void everyElement(int count, const std::function<void(Inst* at)>& each);
     // build_left.cpp: members that displacement() passes on
     Inst* leftBehind(const std::string& name, Type&);
     void hearMembers();
@@ -354,6 +337,8 @@ private:
     Inst* runtimeCall(const Expr&);
     Inst* special(const Expr&);
     std::vector<Inst*> traceParts(const Expr&);
+    struct ServiceCall; // build_service.cpp
+    /// `part`: of a call that gives an array; -1: all in one. `points`: it is answered from point clouds.
     Inst* service(const Expr&, Op, int part = -1, bool points = false);
     struct SplineCall {
         Inst* value = nullptr;
@@ -384,36 +369,25 @@ private:
     Inst* random(const Expr&);
     bool hasGlobal(const char* name) const;
     Inst* global(const char* name, Base);
-    void addArgument(Site&, std::vector<Inst*>& args, Inst* value, Type);
     Inst* foldString(const std::string& op, const std::vector<Inst*>& args);
     bool isLobe(const Expr&) const;
 
-    Kernel& k_;
+    // build_outputs.cpp
+    void output(const std::string& name);
+    /// Puts out a value; of an array each element.
+    void putOut(const std::string& name, Inst* value, Type);
+    bool blockOutput(const std::string& name, const OutputName&);
+    void elementOutput(const std::string& name, const OutputName&);
+    bool parameterOutput(const std::string& name, const OutputName&);
+    void globalOutput(const std::string& name, const OutputName&);
+    std::vector<std::string> usualOutputs() const;
+    void noteBlocks();
+    bool lightsOutside() const;
+
     const Program& program_;
     const Shader& shader_;
-    const KernelOptions& options_;
-    Diagnostics& diagnostics_;
     const DirectSet& direct_;
-    Leaves leaves_;
-    Region* region_ = nullptr;
-    Place place_;
-    std::optional<Place> ownText_; ///< inside a function of the renderer that is written in RSL: where the shader calls it
-    Place shownPlace(const Place& p) const { return ownText_ ? *ownText_ : p; }
-    /// The same, with the file added to the kernel's list of files, so that run-time messages can name it.
-    Place keptPlace(const Place& p) const {
-        Place kept = shownPlace(p);
-        if (kept.file >= 0) kept.file += fileBase_;
-        return kept;
-    }
-    int fileBase_ = 0; ///< of files_
-    std::unordered_map<const Symbol*, int> slots_;
-    std::map<std::string, int> globals_;
-    std::vector<const Symbol*> symbols_; ///< by slot; null for the builder's own
-    std::vector<Inst*> env_;
-    std::vector<std::pair<int, Inst*>> log_;
     std::deque<Frame> frames_; ///< references stay valid while functions are entered
-    std::unordered_map<std::string, Inst*> inputs_;
-    std::set<std::string> writes_;
     /// Slots of what a block of a light gives.
     struct LightBlock {
         const Stmt* stmt;
@@ -435,11 +409,10 @@ private:
     int largestResize_ = -1;
     std::set<const Symbol*> grown_;
     std::vector<Instance> instances_;
-    const std::vector<std::string>* files_ = &program_.files; ///< those that places refer to just now
-    int handleDepth_ = 0;                                     ///< methods of co-shaders that are open
-    int constructing_ = 0;                                    ///< open construct()
-    int quiet_ = 0;                                           ///< what runs now prints nothing
-    int sharing_ = 0; ///< open functions whose output parameters are variables of the caller
+    int handleDepth_ = 0;  ///< methods of co-shaders that are open
+    int constructing_ = 0; ///< open construct()
+    int quiet_ = 0;        ///< what runs now prints nothing
+    int sharing_ = 0;      ///< open functions whose output parameters are variables of the caller
     std::set<std::pair<size_t, const Function*>> openMethods_, scannedMethods_;
     std::vector<std::pair<size_t, const Function*>> way_; ///< openMethods_ in the order of their calls
     std::optional<std::pair<size_t, const Function*>> methodByName(const Function&) const;
@@ -451,10 +424,6 @@ private:
     /// Output parameters that lights ask for: slot and type.
     std::map<std::string, std::pair<int, Type>> messageSlots_;
     bool uniformContext_ = false; ///< the value goes to a uniform variable: one random() for all
-    bool failed_ = false;
 };
-
-Kind kindOf(Type);
-SourcePlace sourcePlace(const std::vector<std::string>& files, const Place&);
 
 } // namespace alpenglow::rsl::ir

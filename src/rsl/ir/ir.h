@@ -154,6 +154,11 @@ struct KernelFacts {
     std::vector<std::string> writes; ///< predefined variables that the shader assigns
 };
 
+/// An output of a kernel, and whether the light that its Requests ask for reaches it.
+struct OutputLight {
+    OutputSlot output;
+    bool light;
+};
 struct Kernel {
     std::string name;
     ShaderKind kind{};

@@ -63,37 +63,53 @@ struct Verifier {
         return good || fail(f, "its body uses values from outside");
     }
 
-    bool shape(const Inst* i) {
-        const auto a = [&](size_t n) { return i->args[n]; };
-        const auto same = [&](size_t n) {
-            if (i->args.size() != n) return fail(i, "wrong number of operands");
-            for (const Inst* x : i->args)
-                if (x->kind != i->kind) return fail(i, "operands of another kind than the result");
-            return i->kind == Kind::Float || i->kind == Kind::Triple || fail(i, "not a kind for arithmetic");
-        };
+    /// Arithmetic: `n` operands of the kind of the result.
+    bool same(const Inst* i, size_t n) {
+        if (i->args.size() != n) return fail(i, "wrong number of operands");
+        for (const Inst* x : i->args)
+            if (x->kind != i->kind) return fail(i, "operands of another kind than the result");
+        return i->kind == Kind::Float || i->kind == Kind::Triple || fail(i, "not a kind for arithmetic");
+    }
+
+    bool hold(const Inst* i, bool good, const char* why) { return good || fail(i, why); }
+
+    bool result(const Inst* i) {
+        if (i->args.size() != 1 || static_cast<size_t>(i->index) >= i->args[0]->results.size()) return fail(i, "no such result");
+        return hold(i, i->args[0]->results[static_cast<size_t>(i->index)] == i->kind, "result of another kind");
+    }
+
+    bool extract(const Inst* i) {
+        const int n = i->args.size() == 1 ? components(i->args[0]->kind) : 0;
+        return hold(i, i->index >= 0 && i->index < n && n > 1, "no such component");
+    }
+
+    bool equality(const Inst* i) {
+        if (i->args.size() != 2) return fail(i, "wrong operands");
+        const Kind a = i->args[0]->kind, b = i->args[1]->kind;
+        return hold(i, a == b && (a == Kind::Float || a == Kind::String), "wrong operands");
+    }
+
+    /// Everything that only computes a value.
+    bool value(const Inst* i) {
         switch (i->op) {
         case Op::Const:
-            return static_cast<int>(i->numbers.size()) == components(i->kind) || fail(i, "wrong number of components");
+            return hold(i, static_cast<int>(i->numbers.size()) == components(i->kind), "wrong number of components");
         case Op::ConstString:
-            return i->kind == Kind::String || fail(i, "not a string");
+            return hold(i, i->kind == Kind::String, "not a string");
         case Op::Input:
-            return static_cast<size_t>(i->index) < k.inputs.size() || fail(i, "no such input");
         case Op::ArrayInput:
-            return static_cast<size_t>(i->index) < k.inputs.size() || fail(i, "no such input");
-        case Op::Result: {
-            if (i->args.size() != 1 || static_cast<size_t>(i->index) >= i->args[0]->results.size())
-                return fail(i, "no such result");
-            return i->args[0]->results[static_cast<size_t>(i->index)] == i->kind || fail(i, "result of another kind");
-        }
+            return hold(i, static_cast<size_t>(i->index) < k.inputs.size(), "no such input");
+        case Op::Result:
+            return result(i);
         case Op::Add:
         case Op::Sub:
         case Op::Mul:
         case Op::Div:
-            return same(2);
+            return same(i, 2);
         case Op::Neg:
         case Op::Du:
         case Op::Dv:
-            return same(1);
+            return same(i, 1);
         case Op::Splat:
             return kinds(i, {Kind::Float});
         case Op::Triple:
@@ -101,17 +117,13 @@ struct Verifier {
         case Op::MatrixOf:
             return kinds(i, std::vector<Kind>(16, Kind::Float));
         case Op::Extract:
-            return i->args.size() == 1 && i->index >= 0 && i->index < components(a(0)->kind) && components(a(0)->kind) > 1
-                       ? true
-                       : fail(i, "no such component");
+            return extract(i);
         case Op::Less:
         case Op::LessEqual:
             return kinds(i, {Kind::Float, Kind::Float});
         case Op::Equal:
         case Op::NotEqual:
-            return i->args.size() == 2 && a(0)->kind == a(1)->kind && (a(0)->kind == Kind::Float || a(0)->kind == Kind::String)
-                       ? true
-                       : fail(i, "wrong operands");
+            return equality(i);
         case Op::And:
         case Op::Or:
             return kinds(i, {Kind::Bool, Kind::Bool});
@@ -119,67 +131,101 @@ struct Verifier {
         case Op::ToFloat:
             return kinds(i, {Kind::Bool});
         case Op::Select:
-            return kinds(i, {Kind::Bool, i->kind, i->kind}) && i->kind != Kind::Array ? true : fail(i, "wrong operands");
+            return hold(i, kinds(i, {Kind::Bool, i->kind, i->kind}) && i->kind != Kind::Array, "wrong operands");
+        default:
+            return true;
+        }
+    }
+
+    bool array(const Inst* i) {
+        if (!kinds(i, {Kind::Array, Kind::Float})) return false;
+        const Inst* a = i->args[0];
+        if (i->op == Op::ArrayLoad) return hold(i, a->element == i->kind, "element of another kind");
+        return hold(i, kinds(i, {Kind::Array, Kind::Float, a->element}) && a->op == Op::ArrayNew, "wrong operands");
+    }
+
+    /// Service, Request and Emit.
+    bool atSite(const Inst* i) {
+        if (static_cast<size_t>(i->site) >= k.sites.size()) return fail(i, "no such site");
+        const std::vector<Kind>& want = k.sites[static_cast<size_t>(i->site)].argKinds;
+        const size_t from = i->op == Op::Emit ? 1 : 0;
+        if (i->args.size() != want.size() + from) return fail(i, "operands do not match the site");
+        return kinds(i, want, from) && (from == 0 || hold(i, i->args[0]->kind == Kind::Triple, "the weight is not a triple"));
+    }
+
+    bool branch(const Inst* i) {
+        const std::vector<Kind> r = resultKinds(*i);
+        const auto side = [&](size_t n, const char* what) {
+            return i->regions[n].params.empty() && yields(i, i->regions[n], r, what);
+        };
+        return hold(i,
+                    i->args.size() == 1 && kinds(i, {Kind::Bool}) && i->regions.size() == 2 && side(0, "then") && side(1, "else"),
+                    "wrong shape");
+    }
+
+    bool loop(const Inst* i) {
+        const std::vector<Kind> r = resultKinds(*i);
+        return hold(i,
+                    i->regions.size() == 2 && i->args.size() == r.size() && kinds(i, r) && params(i, i->regions[0], r) &&
+                        params(i, i->regions[1], r) && yields(i, i->regions[0], {Kind::Bool}, "while") &&
+                        yields(i, i->regions[1], r, "do"),
+                    "wrong shape");
+    }
+
+    bool lightLoop(const Inst* i) {
+        const std::vector<Kind> r = resultKinds(*i);
+        std::vector<Kind> p = {Kind::Triple, Kind::Triple, Kind::Triple, Kind::Float};
+        p.insert(p.end(), r.begin(), r.end());
+        return hold(i,
+                    i->regions.size() == 1 && i->args.size() == r.size() + 3 &&
+                        kinds(i, {Kind::Triple, Kind::Triple, Kind::Float}) && kinds(i, r, 3) && params(i, i->regions[0], p) &&
+                        yields(i, i->regions[0], r, "body"),
+                    "wrong shape");
+    }
+
+    bool call(const Inst* i) {
+        if (i->args.empty() || i->args[0]->op != Op::Function) return fail(i, "calls no function");
+        const Inst* f = i->args[0];
+        std::vector<Kind> want;
+        for (const Inst* p : f->regions[0].params) want.push_back(p->kind);
+        return hold(i,
+                    i->args.size() == want.size() + 1 && kinds(i, want, 1) &&
+                        yields(f, f->regions[0], resultKinds(*i), "the function"),
+                    "operands do not match the function");
+    }
+
+    bool output(const Inst* i) {
+        return hold(i,
+                    i->args.size() == 1 && static_cast<size_t>(i->index) < k.outputs.size() &&
+                        i->args[0]->kind == k.outputs[static_cast<size_t>(i->index)].kind,
+                    "wrong operand");
+    }
+
+    bool shape(const Inst* i) {
+        switch (i->op) {
         case Op::ArrayLoad:
-            return kinds(i, {Kind::Array, Kind::Float}) && a(0)->element == i->kind ? true : fail(i, "element of another kind");
         case Op::ArrayStore:
-            return kinds(i, {Kind::Array, Kind::Float, a(0)->element}) && a(0)->op == Op::ArrayNew ? true
-                                                                                                   : fail(i, "wrong operands");
+            return array(i);
         case Op::Service:
         case Op::Request:
-        case Op::Emit: {
-            if (static_cast<size_t>(i->site) >= k.sites.size()) return fail(i, "no such site");
-            const std::vector<Kind>& want = k.sites[static_cast<size_t>(i->site)].argKinds;
-            const size_t from = i->op == Op::Emit ? 1 : 0;
-            if (i->args.size() != want.size() + from) return fail(i, "operands do not match the site");
-            return kinds(i, want, from) && (from == 0 || a(0)->kind == Kind::Triple || fail(i, "the weight is not a triple"));
-        }
-        case Op::If: {
-            const std::vector<Kind> r = resultKinds(*i);
-            return i->args.size() == 1 && kinds(i, {Kind::Bool}) && i->regions.size() == 2 && i->regions[0].params.empty() &&
-                           i->regions[1].params.empty() && yields(i, i->regions[0], r, "then") &&
-                           yields(i, i->regions[1], r, "else")
-                       ? true
-                       : fail(i, "wrong shape");
-        }
-        case Op::Loop: {
-            const std::vector<Kind> r = resultKinds(*i);
-            return i->regions.size() == 2 && i->args.size() == r.size() && kinds(i, r) && params(i, i->regions[0], r) &&
-                           params(i, i->regions[1], r) && yields(i, i->regions[0], {Kind::Bool}, "while") &&
-                           yields(i, i->regions[1], r, "do")
-                       ? true
-                       : fail(i, "wrong shape");
-        }
-        case Op::LightLoop: {
-            const std::vector<Kind> r = resultKinds(*i);
-            std::vector<Kind> p = {Kind::Triple, Kind::Triple, Kind::Triple, Kind::Float};
-            p.insert(p.end(), r.begin(), r.end());
-            return i->regions.size() == 1 && i->args.size() == r.size() + 3 &&
-                           kinds(i, {Kind::Triple, Kind::Triple, Kind::Float}) && kinds(i, r, 3) && params(i, i->regions[0], p) &&
-                           yields(i, i->regions[0], r, "body")
-                       ? true
-                       : fail(i, "wrong shape");
-        }
+        case Op::Emit:
+            return atSite(i);
+        case Op::If:
+            return branch(i);
+        case Op::Loop:
+            return loop(i);
+        case Op::LightLoop:
+            return lightLoop(i);
         case Op::Function:
-            return i->regions.size() == 1 && i->args.empty() && i->kind == Kind::None ? closed(i) : fail(i, "wrong shape");
-        case Op::Call: {
-            if (i->args.empty() || a(0)->op != Op::Function) return fail(i, "calls no function");
-            const Region& r = a(0)->regions[0];
-            std::vector<Kind> want;
-            for (const Inst* p : r.params) want.push_back(p->kind);
-            return i->args.size() == want.size() + 1 && kinds(i, want, 1) && yields(a(0), r, resultKinds(*i), "the function")
-                       ? true
-                       : fail(i, "operands do not match the function");
-        }
+            return hold(i, i->regions.size() == 1 && i->args.empty() && i->kind == Kind::None, "wrong shape") && closed(i);
+        case Op::Call:
+            return call(i);
         case Op::Output:
-            return i->args.size() == 1 && static_cast<size_t>(i->index) < k.outputs.size() &&
-                           a(0)->kind == k.outputs[static_cast<size_t>(i->index)].kind
-                       ? true
-                       : fail(i, "wrong operand");
+            return output(i);
         case Op::Rescale:
             return kinds(i, {Kind::Float, Kind::Triple});
         default:
-            return true;
+            return value(i);
         }
     }
 

@@ -5,7 +5,7 @@
 #include "rsl/passes/affine_weights.h"
 #include "rsl/passes/split_sums.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 std::vector<std::pair<int, std::string>> nonAffineSites(const Kernel& k) {
     std::map<int, std::string> all = analyseDependence(k).bad;
@@ -96,4 +96,4 @@ void makeAffine(Kernel& k) {
     if (facts.stuck.empty() || !prove(k, true)) k.facts = facts;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -2,11 +2,12 @@
 // does not wait: it returns a and emits the pairs (w_i, request).
 #pragma once
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 #include <string>
 #include <utility>
 #include <vector>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// Requests whose results are not used affinely in Kernel::light (Ci, mostly) alone, with the reason, in order of their sites.
 /// Long or short form.
@@ -16,4 +17,4 @@ std::vector<std::pair<int, std::string>> nonAffineSites(const Kernel&);
 /// else leaves the kernel as it is. Sets facts.affine, whyNot and suspends. Long form.
 void makeAffine(Kernel&);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -1,7 +1,7 @@
 #include "rsl/passes/affine_analysis.h"
 #include "rsl/ir/edit.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 bool isMix(const Inst* i) {
     return i->op == Op::Runtime && (i->text == "al_mix_f" || i->text == "al_mix_t" || i->text == "al_mixf_t");
@@ -249,4 +249,4 @@ Dependence analyseInput(const Kernel& k, const std::string& input) {
     return a.d;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -1,11 +1,12 @@
 // First half of the affine proof: which values depend on ray and light results, and where that is not affine.
 #pragma once
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 #include "rsl/passes/siteset.h"
 #include <map>
 #include <string>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 struct Dependence {
     /// By instruction id: the Requests that the value depends on, by ordinal. Empty: independent.
@@ -35,4 +36,4 @@ Dependence analyseInput(const Kernel&, const std::string& input);
 /// Runtime calls that are affine in their first two arguments: mix.
 bool isMix(const Inst*);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -2,7 +2,7 @@
 #include "rsl/passes/affine_constant.h"
 #include "rsl/ir/edit.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 void dropResults(Kernel& k, const Dependence& d) {
     std::vector<char> zero(k.pool.size(), 1);
@@ -72,4 +72,4 @@ void dropResults(Kernel& k, const Dependence& d) {
     rep.apply(k.body);
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

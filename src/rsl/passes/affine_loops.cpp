@@ -3,7 +3,7 @@
 #include "rsl/passes/fold.h"
 #include <algorithm>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 Growth Weights::growth(Inst* v, Inst* p) {
     const uint64_t key = (static_cast<uint64_t>(v->id) << 32) | p->id;
@@ -224,4 +224,4 @@ void Weights::finishLoop(Inst* i, Region& r, Region& body, std::vector<Inst*>& c
     tails[&body] = std::move(code);
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

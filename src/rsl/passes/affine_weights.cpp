@@ -2,7 +2,7 @@
 #include "rsl/passes/fold.h"
 #include <algorithm>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 bool Weights::run(Inst* ci) {
     home.resize(k.pool.size());
@@ -276,4 +276,4 @@ void Weights::assemble(Region& r) {
     r.body = std::move(body);
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -4,12 +4,13 @@
 #pragma once
 #include "rsl/ir/edit.h"
 #include "rsl/passes/affine_analysis.h"
+#include "rsl/passes/names.h"
 #include <string>
 #include <unordered_map>
 #include <utility>
 #include <vector>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// How a value depends on a loop variable: not, by adding to it only, or otherwise.
 enum class Growth : uint8_t { None, Identity, Other };
@@ -99,4 +100,4 @@ private:
     std::vector<Inst*>* out = nullptr;
 };
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

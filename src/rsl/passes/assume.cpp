@@ -2,7 +2,7 @@
 #include "rsl/ir/edit.h"
 #include <unordered_map>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 struct Assumer {
@@ -71,4 +71,4 @@ int assumeConditions(Kernel& k) {
     return a.changes;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

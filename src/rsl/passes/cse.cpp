@@ -1,7 +1,7 @@
 #include "rsl/passes/cse.h"
 #include "rsl/ir/edit.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 struct Merger {
@@ -64,4 +64,4 @@ int mergeCommon(Kernel& k) {
     return m.changes;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

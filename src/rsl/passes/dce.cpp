@@ -2,7 +2,7 @@
 #include "rsl/ir/edit.h"
 #include <cstring>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 /// Marks what is needed, from the effects backwards; what is not marked goes, carried variables one by one.
@@ -274,4 +274,4 @@ void removeUnusedInputs(Kernel& k) {
     });
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

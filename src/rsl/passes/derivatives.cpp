@@ -6,7 +6,7 @@
 #include <functional>
 #include <unordered_map>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 struct Orders {
@@ -260,4 +260,4 @@ CallOrders callOrders(Kernel& k, Inst* function, const std::vector<uint8_t>& res
     return list;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

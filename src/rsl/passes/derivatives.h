@@ -2,8 +2,9 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// Sets Inst::order and Input::order. Results of rays and lights count as constant, warned once each; so does a
 /// derivative of third order. Either form.
@@ -14,4 +15,4 @@ void orderDerivatives(Kernel&, Diagnostics&);
 using CallOrders = std::vector<std::pair<Inst*, std::vector<uint8_t>>>;
 CallOrders callOrders(Kernel&, Inst* function, const std::vector<uint8_t>& results);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

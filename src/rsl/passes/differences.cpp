@@ -3,7 +3,7 @@
 #include "rsl/passes/neighbourvalues.h"
 #include <algorithm>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 /// Sums deeper than this are not looked through for inputs.
@@ -402,4 +402,4 @@ void takeDifferences(Kernel& k) {
     if (any) Differences(k).run();
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

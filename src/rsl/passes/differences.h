@@ -1,8 +1,9 @@
 // Derivatives as a grid of micropolygons has them.
 #pragma once
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// Puts differences in the place of Du and Dv: the values that they reach are worked out at the point and one step of du and dv
 /// on, and Du(x) becomes (x(u + du, v) - x(u, v)) / du. What is left of Du and Dv is of inputs, whose derivatives the renderer
@@ -12,4 +13,4 @@ namespace alpenglow::rsl::ir {
 /// Source: Cook, Carpenter, Catmull 1987 (derivatives on the grid); RISpec 3.2, 15.1.
 void takeDifferences(Kernel&);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstring>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 bool sameBits(float a, float b) { return std::memcmp(&a, &b, sizeof a) == 0; }
@@ -237,4 +237,4 @@ int fold(Kernel& k) {
     return f.changes;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

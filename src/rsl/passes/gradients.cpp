@@ -5,7 +5,7 @@
 #include <map>
 #include <unordered_map>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 struct Gradients {
@@ -138,4 +138,4 @@ std::vector<size_t> lookupCoordinates(const Kernel& k, const Inst* i) {
 
 void addGradients(Kernel& k) { Gradients{k, Leaves(k), {}, {}, {}, {}}.run(); }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

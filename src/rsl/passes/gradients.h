@@ -1,9 +1,10 @@
 // Derivatives through texture() and environment().
 #pragma once
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 #include <vector>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// Which arguments of a lookup are its coordinates, in order: s and t, or a direction; four of each where corners are given. The
 /// others say how wide the filter is, and what else.
@@ -15,4 +16,4 @@ std::vector<size_t> lookupCoordinates(const Kernel&, const Inst* service);
 /// coordinates, al_chain*. Other lookups stay as they are. Long form, after orderDerivatives().
 void addGradients(Kernel&);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

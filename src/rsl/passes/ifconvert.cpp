@@ -1,7 +1,7 @@
 #include "rsl/passes/ifconvert.h"
 #include "rsl/ir/edit.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 /// Instructions the branch would cost when always run; a large number when it must not be.
@@ -105,4 +105,4 @@ int convertIfs(Kernel& k) {
     return c.changes;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

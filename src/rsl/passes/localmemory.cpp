@@ -4,7 +4,7 @@
 #include "rsl/messages/messages.h"
 #include <algorithm>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 // A value and its derivative parts: 1, 3 or 6 floats a component.
@@ -35,4 +35,4 @@ void checkLocalMemory(const Kernel& k, Diagnostics& diagnostics) {
                                   {known ? k.files[static_cast<size_t>(at.file)] : "", at.line, at.column}));
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

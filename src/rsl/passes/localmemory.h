@@ -2,8 +2,9 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// Bytes that the local arrays of a kernel whose derivatives are ordered (passes/derivatives.h) take for one point at most, those
 /// of its functions included.
@@ -11,4 +12,4 @@ size_t localArrayBytes(const Kernel&);
 /// An error at the largest array when that is more than limits::kShaderMemory. The same for every number of lanes.
 void checkLocalMemory(const Kernel&, Diagnostics&);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -3,7 +3,7 @@
 #include "rsl/ir/complaint.h"
 #include "rsl/ir/edit.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 void limitLoops(Kernel& k) {
     // Sites of their own at the end: the numbers of the others are in random numbers.
@@ -16,4 +16,4 @@ void limitLoops(Kernel& k) {
     });
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 bool stepFrom(Neighbour n, bool v, Neighbour& next) {
     static constexpr Neighbour kNext[3][2] = {
@@ -381,4 +381,4 @@ void Demand::keep(Inst* a, Neighbour n, const Inst* within) {
     }
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -1,13 +1,14 @@
 // Which values of a kernel are needed at neighbours of a point, for derivatives by differences (differences.h).
 #pragma once
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 #include <map>
 #include <memory>
 #include <set>
 #include <unordered_map>
 #include <vector>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// Where a value is needed: at the point, or so many steps of du and dv from it. Derivatives of third order are not taken.
 enum class Neighbour : uint8_t { Here, U, V, UU, UV, VV };
@@ -108,4 +109,4 @@ private:
     std::vector<Wanted> work_;
 };
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -2,11 +2,12 @@
 // (differences.cpp).
 #pragma once
 #include "rsl/ir/edit.h"
+#include "rsl/passes/names.h"
 #include "rsl/passes/neighbours.h"
 #include <functional>
 #include <tuple>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// The step where there is no footprint: small against the surface, large against rounding.
 inline constexpr float kStep = 1.0f / 1024;
@@ -150,4 +151,4 @@ private:
     Inst* footprint_[2] = {};
 };
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -5,7 +5,7 @@
 #include <unordered_map>
 #include <unordered_set>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 namespace {
 
@@ -67,4 +67,4 @@ void readSideOfNormal(Kernel& k) {
     if (std::all_of(reads.begin(), reads.end(), [&](Inst* i) { return proportion.onlySigns(i); })) input->name = kSideNormal;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -24,7 +24,7 @@
 #include <cstdio>
 #include <cstdlib>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 void check([[maybe_unused]] const Kernel& k, [[maybe_unused]] const char* pass) {
@@ -166,4 +166,4 @@ void optimize(Kernel& k, const KernelOptions& options, Diagnostics& diagnostics)
     checkLocalMemory(k, diagnostics);
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

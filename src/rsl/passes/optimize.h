@@ -3,14 +3,10 @@
 #include "base/diagnostics.h"
 #include "rsl/ir/ir.h"
 #include "rsl/kernel.h"
+#include "rsl/passes/names.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
-/// An output of a kernel, and whether the light that its Requests ask for reaches it.
-struct OutputLight {
-    OutputSlot output;
-    bool light;
-};
 /// Of a kernel as it was built; changes it. In order of its outputs.
 std::vector<OutputLight> lightOfOutputs(Kernel&, const KernelOptions&);
 
@@ -21,4 +17,4 @@ void simplify(Kernel&, const KernelOptions&);
 /// meaning or interface: affine form, derivative orders, uniformity, unused inputs.
 void optimize(Kernel&, const KernelOptions&, Diagnostics&);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -7,7 +7,7 @@
 #include <map>
 #include <unordered_set>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 struct Inliner {
@@ -143,4 +143,4 @@ void specialiseFunctions(Kernel& k) {
     body.insert(behindLeaves, s.made.begin(), s.made.end());
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -2,8 +2,9 @@
 // which stay: large ones with several calls, and none that a ray's result goes through (the affine proof looks into everything).
 #pragma once
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// Inlines the calls of functions of at most `budget` instructions, of functions with one call (unless budget is 0), and of those
 /// that are given a value that depends on a Request, the last as long as the kernel stays below limits::kAffineInlining. Long
@@ -14,4 +15,4 @@ int inlineCalls(Kernel&, int budget);
 /// one. Afterwards orderDerivatives() finds for each function exactly what is wanted.
 void specialiseFunctions(Kernel&);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -4,7 +4,7 @@
 #include <map>
 #include <set>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 using Key = std::pair<uint32_t, int>; ///< array id, element
@@ -118,4 +118,4 @@ int promoteArrays(Kernel& k) {
     return p.changes;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

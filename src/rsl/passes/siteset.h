@@ -1,10 +1,11 @@
 // A set of the Requests of a kernel, by their ordinals. Exact for any number of them.
 #pragma once
+#include "rsl/passes/names.h"
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 class SiteSet {
 public:
@@ -56,4 +57,4 @@ private:
     std::vector<uint64_t> rest_;
 };
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -4,7 +4,7 @@
 #include "rsl/passes/affine_analysis.h"
 #include "rsl/passes/affine_weights.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 bool Weights::runToInputs(Inst* ci, const std::vector<Inst*>& inputs, int output) {
     home.resize(k.pool.size());
@@ -55,4 +55,4 @@ void addSlope(Kernel& k) {
     k.outputs.push_back({OutputName::slope("Ci").text(), Kind::Triple, {Base::Color, 0}});
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -3,7 +3,7 @@
 #include "rsl/passes/affine_analysis.h"
 #include "rsl/passes/dce.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 struct Splitter {
@@ -78,4 +78,4 @@ int splitSums(Kernel& k) {
     return s.changes;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

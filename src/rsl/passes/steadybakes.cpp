@@ -4,7 +4,7 @@
 #include <map>
 #include <unordered_map>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 namespace {
 
@@ -124,4 +124,4 @@ private:
 
 void markSteadyBakes(Kernel& k) { Steadiness(k).run(); }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -2,7 +2,7 @@
 #include "rsl/ir/edit.h"
 #include "rsl/passes/fold.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 namespace {
 
 struct Unroller {
@@ -94,4 +94,4 @@ int unrollLoops(Kernel& k) {
     return u.changes;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -2,8 +2,9 @@
 // flow.
 #pragma once
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 inline constexpr int kUnrollTrips = 64;         ///< longer loops stay loops
 inline constexpr int kUnrollInstructions = 768; ///< of one loop, unrolled
@@ -11,4 +12,4 @@ inline constexpr int kUnrollInstructions = 768; ///< of one loop, unrolled
 /// Long form. Returns the number of loops removed.
 int unrollLoops(Kernel&);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

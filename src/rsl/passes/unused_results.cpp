@@ -2,7 +2,7 @@
 #include "rsl/ir/edit.h"
 #include <map>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 void removeUnusedResults(Kernel& k) {
     std::map<int, std::vector<char>> read; // by site
@@ -43,4 +43,4 @@ void removeUnusedResults(Kernel& k) {
     });
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

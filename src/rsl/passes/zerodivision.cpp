@@ -3,7 +3,7 @@
 #include "rsl/messages/messages.h"
 #include <algorithm>
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 bool waitsForWarning(const Inst& i) {
     if (i.op != Op::Div || i.index != kWrittenDivision || !isConst(i.args[1])) return false;
@@ -27,4 +27,4 @@ int warnOfZeroDivisions(Kernel& k, Diagnostics& diagnostics) {
     return found;
 }
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

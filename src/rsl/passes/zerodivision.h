@@ -2,8 +2,9 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/ir/ir.h"
+#include "rsl/passes/names.h"
 
-namespace alpenglow::rsl::ir {
+namespace alpenglow::rsl::passes {
 
 /// Inst::index of a Div that stands in the text of a shader, not in that of a shadeop. One whose divisor is a constant zero is
 /// not folded: only when dead code is gone is it known whether it runs.
@@ -14,4 +15,4 @@ bool waitsForWarning(const Inst&);
 /// Warns of each at its place, and frees them to be folded. Returns how many there were.
 int warnOfZeroDivisions(Kernel&, Diagnostics&);
 
-} // namespace alpenglow::rsl::ir
+} // namespace alpenglow::rsl::passes

@@ -41,7 +41,7 @@ inline Compiled compile(const std::string& source, const KernelOptions& options 
         if (c.kernel) {
             EXPECT_EQ(ir::verify(*c.kernel), "") << ir::print(*c.kernel);
             if (optimise) {
-                ir::optimize(*c.kernel, options, d);
+                passes::optimize(*c.kernel, options, d);
                 EXPECT_EQ(ir::verify(*c.kernel), "") << ir::print(*c.kernel);
             }
         }

@@ -96,7 +96,8 @@ constexpr OptionDescription kOptions[] = {
     {"rib:indentation", "", "", "", Ignored, "PRMan; alpenglow rib writes RIB, by its own flags"},
     {"rib:precision", "", "", "", Ignored, "PRMan; numbers are written so that they read back the same"},
     {"ribparse:varsubst", "string", "\"\"", "\"$\"", Used,
-     "A character begins variables in RIB. They are not substituted here: a value other than \"\" is reported."},
+     "The character that begins variables in the texts that follow: ${name} and $name stand for what IfBegin has under that "
+     "name. What is not set stays as it is."},
     {"runtime:verbosity", "", "", "", Ignored, "BMRT; -q and -v choose what is printed"},
     {"searchpath:archive", "string", "\"\"", "\"archives:&\"", Used,
      "Folders for ReadArchive, separated by ':'. & is the path so far, @ what is searched without it, ~ and $NAME as a shell has "

@@ -92,13 +92,4 @@ TEST_F(OptionEffects, HitModes) {
         }
 }
 
-TEST_F(OptionEffects, VariablesInRibAreToldOf) {
-    write("a.rib",
-          "Option \"ribparse\" \"string varsubst\" \"$\"\nFormat 4 4 1\nDisplay \"a.exr\" \"openexr\" \"rgb\"\nWorldBegin\n"
-          "Sphere 1 -1 1 360\nWorldEnd\n");
-    run("render a.rib");
-    EXPECT_EQ(status, 0);
-    EXPECT_NE(text("err").find("variables in RIB (varsubst) are not substituted"), std::string::npos) << text("err");
-}
-
 } // namespace optioneffects_test

@@ -175,14 +175,12 @@ static std::shared_ptr<BlobGround> readGround(const std::string& path, const Mat
         if (!std::isfinite(m[i / 16][i % 16] = real(8 + 4 * i))) return why = "its matrices are not finite", nullptr;
     g->toScreen = objectToWorld * matrixOf(m[0]);
     g->toCamera = objectToWorld * matrixOf(m[1]);
-    g->least = INFINITY, g->most = -INFINITY;
     for (size_t i = 0; i < n; ++i) {
         float z = real(kHead + 4 * i);
         if (!(std::fabs(z) < 1e30f)) z = 1e30f; // empty: infinitely far
         g->depth.push_back(z);
-        g->least = std::min(g->least, z);
-        g->most = std::max(g->most, z);
     }
+    g->sumUp();
     return g;
 }
 

@@ -124,6 +124,8 @@ constexpr OptionDescription kOptions[] = {
     {"searchpath:texture", "string", "\"\"", "\"maps:@\"", Used, "Folders for texture, environment and shadow maps.", "\"\""},
     {"shade:specular", "string", "\"prman\"", "\"rispec\"", Used,
      "The exponent of specular(): \"prman\" 8/roughness, \"rispec\" 1/roughness, as RISpec prints it.", "\"prman\""},
+    {"shading:directlightingsamples", "", "", "", Ignored,
+     "PRMan; each light has its own number of samples, and PixelSamples decides under path"},
     {"shadow:bias", "float", "0.225", "0.05", Used,
      "shadow(): how far before the surfaces of a depth map a point is lit, in world units.", "0.225"},
     {"shadow:bias0", "float", "bias", "0.05", Used,

@@ -14,6 +14,11 @@ float disneySheen(float sheen, c)
     float x = 1 - c, x2 = x * x;
     return sheen * x * (.0117 + x2 * (.0796 + x2 * (-.0124 + x2 * .0098)));
 }
+/* What the sheen gives back, with its tint, at most everything: a tint has parts above 1. The rest is for what lies below. */
+color disneyCloth(float sheen; color tint; float c)
+{
+    return clamp(disneySheen(sheen, c) * tint, color 0, color 1);
+}
 /* The highlight, of reflectance `shine` straight on and 1 at the rim. kept: what of light goes on below. */
 color disneySpecular(color shine; float roughness, anisotropic; normal n; vector V; output color kept)
 {

@@ -1,7 +1,8 @@
 /* PxrDisney: the principled reflection of Burley, "Physically Based Shading at Disney" (2012), of RIS. Parameters and defaults are
    those of Pixar's documentation.
      subsurface tints and flattens: the diffuse colour turns to subsurfaceColor (black: baseColor)
-   Unlike there: the diffuse part is Lambert's and loses what the highlights reflect, so that no more light leaves than arrives;
+   Unlike there: the diffuse part is Lambert's and loses what the highlights and the sheen reflect, so that no more light leaves than
+   arrives;
    sheen and highlights have the Fresnel factor of the mean facet; the coat has the facets of the highlight (GTR1 there); both sides
    of the surface are shaded. inputMaterial and inputAOV are not read.
    Ball: Surface "ris/PxrDisney" "color baseColor" [.2 .5 .8] "float clearcoat" 1 */
@@ -24,8 +25,10 @@ surface PxrDisney(varying color baseColor = color(.2, .5, .8), emitColor = 0; va
         light += disneyCoat(clearcoat, clearcoatGloss, n, V, coated);
         kept = kept * coated;
     }
-    if (metallic < 1)
-        light += (1 - metallic) * kept * (below + disneySheen(sheen, n . V) * mix(color 1, tint, sheenTint)) * diffuse(n);
+    if (metallic < 1) {
+        color cloth = disneyCloth(sheen, mix(color 1, tint, sheenTint), n . V);
+        light += (1 - metallic) * kept * (below * (1 - cloth) + cloth) * diffuse(n);
+    }
     Oi = presence;
     Ci = presence * (light + emitColor);
 }

@@ -35,14 +35,14 @@ surface PxrDisneyBsdf(varying color baseColor = .5, emitColor = 0; varying float
     }
     if (metallic < 1 && through < 1) {
         color diffusing = (1 - metallic) * (1 - specTrans) * kept * coated;
-        color cloth = disneySheen(sheen, n . V) * mix(color 1, tint, sheenTint);
+        color cloth = disneyCloth(sheen, mix(color 1, tint, sheenTint), n . V), under = diffusing * (1 - cloth);
         float half = (isThin == 1) ? clamp(diffTrans / 2, 0, 1) : 0, walks = (isThin == 1) ? 0 : clamp(subsurface, 0, 1);
         if (walks > 0) {
             color inside = (subsurfaceColor == black) ? baseColor : subsurfaceColor;
-            light += diffusing * walks * risSubsurface(inside, scatterDistances, g, 1);
+            light += under * walks * risSubsurface(inside, scatterDistances, g, 1);
         }
-        light += diffusing * ((1 - walks) * (1 - half) * baseColor + cloth) * diffuse(n);
-        if (half > 0) light += diffusing * half * baseColor * diffuse(-n);
+        light += (under * (1 - walks) * (1 - half) * baseColor + diffusing * cloth) * diffuse(n);
+        if (half > 0) light += under * half * baseColor * diffuse(-n);
     }
     Oi = presence;
     Ci = presence * (light + emitColor);

@@ -96,7 +96,8 @@ constexpr OptionDescription kOptions[] = {
     {"rib:indentation", "", "", "", Ignored, "PRMan; alpenglow rib writes RIB, by its own flags"},
     {"rib:precision", "", "", "", Ignored, "PRMan; numbers are written so that they read back the same"},
     {"ribparse:varsubst", "string", "\"\"", "\"$\"", Used,
-     "A character begins variables in RIB. They are not substituted here: a value other than \"\" is reported."},
+     "The character that begins variables in the texts that follow: ${name} and $name stand for what IfBegin has under that "
+     "name. What is not set stays as it is."},
     {"runtime:verbosity", "", "", "", Ignored, "BMRT; -q and -v choose what is printed"},
     {"searchpath:archive", "string", "\"\"", "\"archives:&\"", Used,
      "Folders for ReadArchive, separated by ':'. & is the path so far, @ what is searched without it, ~ and $NAME as a shell has "
@@ -123,6 +124,8 @@ constexpr OptionDescription kOptions[] = {
     {"searchpath:texture", "string", "\"\"", "\"maps:@\"", Used, "Folders for texture, environment and shadow maps.", "\"\""},
     {"shade:specular", "string", "\"prman\"", "\"rispec\"", Used,
      "The exponent of specular(): \"prman\" 8/roughness, \"rispec\" 1/roughness, as RISpec prints it.", "\"prman\""},
+    {"shading:directlightingsamples", "", "", "", Ignored,
+     "PRMan; each light has its own number of samples, and PixelSamples decides under path"},
     {"shadow:bias", "float", "0.225", "0.05", Used,
      "shadow(): how far before the surfaces of a depth map a point is lit, in world units.", "0.225"},
     {"shadow:bias0", "float", "bias", "0.05", Used,

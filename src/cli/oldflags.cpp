@@ -61,7 +61,7 @@ constexpr OldFlag kFlags[] = {
     {"-recover", 1, "prman", Use::Noted,
      "keep the samples with --checkpoint FILE, and begin with them by --checkpoint FILE --resume"},
     {"-res", 2, "prman, renderdl, aqsis", Use::Accepted, "--format $1x$2"},
-    {"-rif", 1, "prman", Use::Answered, kNoRif},
+    {"-rif", 1, "prman", Use::Accepted, "--filter $1"},
     {"-shaders", 1, "aqsis", Use::Accepted, kPaths},
     {"-silent", 0, "rendrib", Use::Accepted, "--quiet"},
     {"-stats", 0, "renderdl", Use::Dropped, "a table is printed after each run; --stats FILE.json has more"},

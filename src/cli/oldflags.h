@@ -25,10 +25,6 @@ struct OldFlag {
 /// The flags of `render`.
 std::span<const OldFlag> oldFlags();
 
-/// The hint for users of Rif filters of a scene that is rendered.
-inline constexpr std::string_view kNoRif =
-    "filters (Rif) belong to `alpenglow rib --filter`, which writes to a pipe that `alpenglow render -` reads";
-
 /// A command line with the flags of other renderers replaced.
 struct TranslatedFlags {
     std::vector<std::string> arguments;

@@ -211,7 +211,7 @@ void takeCatrib(std::vector<std::string>& args, const OldName* name) {
         if (!output) args.erase(at);
         args[0] = "rib";
     }
-    if (!args.empty() && args[0] == "rib") joinRifArguments(args);
+    if (!args.empty() && (args[0] == "rib" || args[0] == "render")) joinRifArguments(args);
     if (!name || name->name != "catrib" || args.empty() || args[0] != "rib") return;
     const auto has = [&](std::string_view flag) { return std::find(args.begin(), args.end(), flag) != args.end(); };
     const auto set = [](const char* variable) {

@@ -7,12 +7,14 @@
 #include "cli/modelscene.h"
 #include "cli/rcfile.h"
 #include "cli/renderarguments.h"
+#include "cli/ribfilters.h"
 #include "cli/version.h"
 #include "models/modelfile.h"
 #include "render/renderer.h"
 #include "ri/lookahead.h"
 #include "ri/models/model.h"
 #include "ri/reader.h"
+#include "ri/receiver.h"
 #include "view/preview.h"
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -94,6 +96,39 @@ ri::ReaderOptions readerOptions(const RenderArguments& a, const render::RenderSe
     return options;
 }
 
+/// Filters of requests, and what they make of one.
+class SceneFilters : public ri::RequestReceiver {
+public:
+    /// False: a filter cannot be used, which was reported. diags and stop must outlive this.
+    bool load(const std::vector<std::string>& names, Diagnostics& diags, const StopFlag* stop) {
+        diags_ = &diags;
+        if (!names.empty()) filters_ = RibFilters::make(names, *this, diags, stop);
+        return filters_ || names.empty();
+    }
+    /// From now on requests pass the filters: what stands before the scenes does not.
+    void begin() { begun_ = true; }
+    /// For ReaderOptions::filter; empty without filters.
+    std::function<void(const ri::Call&, std::vector<ri::Call>&)> function() {
+        if (!filters_) return {};
+        return [this](const ri::Call& c, std::vector<ri::Call>& by) {
+            if (!begun_) return by.push_back(c);
+            by_ = &by;
+            filters_->first().request(c);
+        };
+    }
+    void request(const ri::Call& c) override { by_->push_back(c); }
+    void unknown(const std::string& name, const std::vector<ri::Value>&) override {
+        diags_->report(Severity::Error, Rie::BadToken, {}, "a filter puts in the unknown request '" + name + "'; it is left out");
+    }
+    void comment(const std::string&, const std::string&) override {}
+
+private:
+    std::unique_ptr<RibFilters> filters_;
+    Diagnostics* diags_ = nullptr;
+    std::vector<ri::Call>* by_ = nullptr;
+    bool begun_ = false;
+};
+
 using ForeignScene = std::function<std::string(const std::string& file)>; ///< the text of its scene, or ""
 
 void readScenes(const std::vector<std::string>& scenes, const render::RenderSettings& settings, const ri::ReaderOptions& options,
@@ -162,6 +197,9 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
     options.frameSeen = [&](int frame) { seen.push_back(frame); };
     options.overrides = [&](scene::Options& o) { renderer.override(o); };
     bool memory = false;
+    SceneFilters filters;
+    if (!filters.load(a.filters, atOnce.said(), stop)) return kWrongUse;
+    options.filter = filters.function();
     if (!renderer.canBegin()) return kOutputFailed;
     try {
         ri::RibReader reader(options, renderer, atOnce.said());
@@ -169,6 +207,7 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
         renderer.setProcedurals([&reader](const scene::Frame& f, std::span<const int> which) { return reader.make(f, which); });
         readDefaults(a, reader, atOnce.said());
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
+        filters.begin();
         readScenes(a.scenes, settings, options, reader, renderer,
                    [&](const std::string& file) { return modelFolder.scene(file, a.modelTime, atOnce.said()); });
     } catch (const std::bad_alloc&) {

@@ -14,7 +14,7 @@ namespace alpenglow::cli {
 /// Options as they are given, and the settings that checkRenderArguments() makes of them.
 struct RenderArguments {
     render::RenderSettings settings;
-    std::vector<std::string> scenes, searchPaths, displays, rib;
+    std::vector<std::string> scenes, searchPaths, displays, rib, filters;
     std::vector<std::string> lastArchivePaths, lastProceduralPaths; ///< of the environment, after all others
     std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
     std::string gamma, preview;

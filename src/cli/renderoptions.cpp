@@ -105,6 +105,8 @@ void checkSettings(RenderArguments& a, const CLI::App& app) {
     takeDisplays(a);
     if (a.framesAtOnce > 1 && (a.watch || !a.preview.empty() || !a.tev.empty()))
         wrong("--frames-at-once", "does not go with --watch, --preview and --display tev, which look at one frame");
+    if (a.framesAtOnce > 1 && !a.filters.empty())
+        wrong("--frames-at-once", "does not go with --filter, which is asked about one request after the other");
     s.direct = !a.noDirect;
     s.indirect = !a.noIndirect;
     if (const std::string fault = s.output.empty() ? "" : faultOfPictureName(s.output, true); !fault.empty()) wrong("-o", fault);
@@ -295,6 +297,13 @@ void addInput(CLI::App& c, RenderArguments& a) {
         ->group("Input");
     c.add_option("--rib", a.rib, "RIB requests to read before the scene")
         ->type_name("'REQUESTS'")
+        ->allow_extra_args(false)
+        ->group("Input");
+    c.add_option(
+         "--filter", a.filters,
+         "A filter that is asked about each request of the scenes and their archives: a library in C++ (RifPlugin.h) with "
+         "its arguments, FILE.py, FILE.py:FUNCTION or python:MODULE.FUNCTION; several stand one behind the other")
+        ->type_name("'NAME ARGUMENT..'")
         ->allow_extra_args(false)
         ->group("Input");
     c.add_flag("--no-rc", a.noRc, "Read no .alpenglowrc (docs/options.md)")->group("Input");

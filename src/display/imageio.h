@@ -58,6 +58,10 @@ struct WriteOptions {
 /// Writes a complete picture or nothing (base/file.h). Returns false after an error, which is reported.
 bool writeImage(const std::string& path, const Image&, const WriteOptions&, Diagnostics&);
 
+/// Writes depths as a zfile, which holds the channel "z" of a whole picture with its matrices: what is not there is at 1e30, as
+/// are pixels outside of a crop window. Returns false after an error, which is reported.
+bool writeZfile(const std::string& path, const Image&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+
 /// The format of a name's extension, in any case; nothing for others.
 std::optional<Format> formatOfExtension(const std::string& path);
 /// The extensions of all formats that are written: ".exr .tif ...".

@@ -85,7 +85,10 @@ public:
         for (size_t i = 0; i < tape.size(); ++i) {
             if (tape[i].kind != Kind::Leaf) continue;
             const BlobLeaf& l = f.leaves()[tape[i].a];
-            if (l.kind == BlobLeaf::Kind::Ground) continue;
+            if (l.kind == BlobLeaf::Kind::Ground) {
+                deepest_ = kGroundDeepest;
+                continue;
+            }
             RayLeaf& r = rays_[i];
             r.o = l.inside(org);
             r.d = l.inside(org + dir) - r.o;
@@ -111,13 +114,13 @@ public:
         }
         // A line in the surface (along a tube, or through a point of it) is at the threshold everywhere, so that no interval is
         // decided: the result is where it leaves. In other slow cases a ray is limited to kPieces intervals.
-        constexpr int kDeepest = 46, kCoarse = 6, kPieces = 1 << 16;
+        constexpr int kCoarse = 6, kPieces = 1 << 16;
         constexpr double kTouch = 1e-10;
         const bool along = depth >= kCoarse && std::fabs(f0) < kTouch && std::fabs(f1) < kTouch;
         const double middle = 0.5 * (t0 + t1);
-        if (depth >= kDeepest || along || ++pieces_ > kPieces ||
+        if (depth >= deepest_ || along || ++pieces_ > kPieces ||
             !(middle > t0 && middle < t1)) { // it touches, or there is no slope to trust: a change of sign counts
-            if (crosses) out_[found++] = middle;
+            if (crosses) out_[found++] = deepest_ == kGroundDeepest ? refined(t0, f0, t1, f1) : middle;
             return;
         }
         const double fm = at(middle);
@@ -126,6 +129,8 @@ public:
     }
 
 private:
+    /// Halvings of a ray. Depth maps have no slopes that are known, only bounds.
+    static constexpr int kDeepest = 46, kGroundDeepest = 20;
     Course course(double t0, double t1) {
         for (size_t i = 0; i < tape_.size(); ++i) {
             const BlobOp& o = tape_[i];
@@ -175,7 +180,7 @@ private:
     Vec3d org_, dir_;
     int most_;
     double* out_;
-    int pieces_ = 0;
+    int pieces_ = 0, deepest_ = kDeepest;
     TapeResults<RayLeaf> rays_;
     TapeResults<Course> courses_;
 };

@@ -23,10 +23,20 @@ struct BlobGround {
     int width = 0, height = 0;
     std::vector<float> depth;
     Matrix toCamera, toScreen; ///< from object space; screen is -1 to 1
-    float least = 0, most = 0;
+    struct Range {
+        float least, most;
+    };
+    /// Of depths: level k has the texels of the one before two by two, level 0 those of the map.
+    std::vector<std::vector<Range>> levels;
     double a = 0, b = 0, c = 0, d = 0; ///< height where it ends, sharpness, height and strength of the bulge
     /// Height of a point above the ground, along its depth; INFINITY outside of the map.
     double above(const Vec3d& p) const;
+    /// Depth at a place of the map, in texels, whose centres are whole numbers from 0.
+    double depthAt(double i, double j) const;
+    /// Computes levels of `depth`.
+    void sumUp();
+    /// Of the texels from x0, y0 to x1, y1, both included.
+    Range range(int x0, int y0, int x1, int y1) const;
 };
 
 struct BlobLeaf {

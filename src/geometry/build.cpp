@@ -366,7 +366,29 @@ std::vector<ShapeRef> FrameBuilder::run() {
 } // namespace
 
 std::vector<ShapeRef> buildShapes(const scene::Frame& f, Diagnostics& diag, const BuildOptions& options) {
-    return FrameBuilder(f, diag, options).run();
+    // Exporters write thousands of empty polygons: a warning that many primitives give is reported once, with their number.
+    struct Repeated {
+        Diagnostic first;
+        size_t times = 0;
+    };
+    std::vector<Repeated> warnings;
+    std::map<std::string, size_t> numbers; // by message, of `warnings`
+    std::vector<ShapeRef> shapes;
+    {
+        Diagnostics here([&](const Diagnostic& d) {
+            if (!d.once.empty()) return diag.reportOnce(d.once, d);
+            if (d.severity != Severity::Warning) return diag.report(d);
+            const auto [at, fresh] = numbers.try_emplace(d.message, warnings.size());
+            if (fresh) warnings.push_back({d, 0});
+            ++warnings[at->second].times;
+        });
+        shapes = FrameBuilder(f, here, options).run();
+    }
+    for (Repeated& w : warnings) {
+        if (w.times > 1) w.first.message += " (this and " + std::to_string(w.times - 1) + " more)";
+        diag.report(std::move(w.first));
+    }
+    return shapes;
 }
 
 } // namespace alpenglow::geometry

@@ -1,5 +1,6 @@
 // `hidden` and `raytrace`: PixelSamples image samples a pixel, reconstructed by each display's own filter, in bands of rows.
 #include "base/limits.h"
+#include "base/memory.h"
 #include "base/sampler.h"
 #include "render/growth.h"
 #include "render/imaging.h"
@@ -10,6 +11,7 @@
 #include "world/depths.h"
 #include "world/procedurals.h"
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <mutex>
 
@@ -84,6 +86,7 @@ private:
     bool movesDown_ = false; ///< bands share the samples of rows between them
     std::optional<SampleBuffer> buffer_;
     double reached_ = 0;
+    std::atomic<bool> begun_ = false; ///< a task is complete
     std::mutex mutex_;
     std::optional<Growth> growth_; ///< of the current band, if there is a watcher
     std::vector<uint8_t> there_;   ///< by pixel of the window: complete in the images. Only with a watcher
@@ -165,6 +168,7 @@ void ImageLoop::run() {
     for (int b = 0; b < bands_ && !job_.pollStop(); ++b) band(b);
     if (buffer_) memory_ = std::move(*buffer_).takeMemory();
     if (job_.world) job_.world->flushPrints(true);
+    result_.begun = begun_ || !job_.interrupted;
     tell(job_.interrupted ? reached_ : 1, true);
     job_.halt = 0;
 }
@@ -177,12 +181,20 @@ Window ImageLoop::beginBand(const Window& part) {
         return {all.x0, fresh, all.x1, all.y1};
     }
     if (buffer_) memory_ = std::move(*buffer_).takeMemory();
-    if (movesDown_) { // later bands need it; otherwise there would be two
-        const int height = std::min(rows_, window_.height());
-        const size_t most = SampleBuffer::floats(part.width(), height, xw_, yw_, nx_ * ny_, aovs_.size());
-        if (memory_.capacity() < most) memory_ = {}, memory_.reserve(most);
+    const int height =
+        movesDown_ ? std::min(rows_, window_.height()) : part.height(); // later bands need it, or there would be two
+    const size_t most = SampleBuffer::floats(part.width(), height, xw_, yw_, nx_ * ny_, aovs_.size());
+    try {
+        if (movesDown_ && memory_.capacity() < most) memory_ = {}, memory_.reserve(most);
+        buffer_.emplace(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_, std::move(memory_));
+    } catch (const std::bad_alloc&) {
+        job_.diagnostics.report(Severity::Error, Rie::NoMem, {},
+                                "the " + std::to_string(nx_) + " x " + std::to_string(ny_) +
+                                    " samples of each pixel (PixelSamples) take " + memorySizeText(most * sizeof(float)) +
+                                    " for " + std::to_string(height) + (height == 1 ? " row" : " rows") + " of the picture",
+                                "fewer samples, or --crop parts of the picture and merge them; path keeps no samples");
+        throw;
     }
-    buffer_.emplace(part, xw_, yw_, nx_, ny_, aovs_, seed_, jitter_, std::move(memory_));
     return buffer_->sampled();
 }
 
@@ -275,6 +287,7 @@ void ImageLoop::trace(SampleBuffer& buffer, size_t tasks, const std::function<vo
             for (size_t from = 0; from < wanted.size(); from += slice)
                 if (!traceSlice(buffer, worker, std::span(wanted).subspan(from, std::min(slice, wanted.size() - from)))) return;
             if (growth_) growth_->over(i);
+            if (!job_.unfinished(worker)) begun_ = true;
         },
         done);
 }

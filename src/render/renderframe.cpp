@@ -392,6 +392,14 @@ bool Renderer::renderGrid(FrameWork& f, Job& job) {
     stats_.noise = {}; // unknown: neighbouring pixels share samples
     noteInterrupted(job);
     if (abandons(f)) return false;
+    if (!made.begun) { // a picture that is there is better than a black one
+        ++outcome_.refused;
+        if (writesFiles(settings_))
+            diagnostics_.report(Severity::Warning, Rie::NoError, {},
+                                "interrupted before any part was complete; no picture is written");
+        if (settings_.watcher) settings_.watcher->finished(nullptr);
+        return true;
+    }
     ++outcome_.rendered;
     if (job.interrupted && writesFiles(settings_))
         diagnostics_.report(Severity::Warning, Rie::NoError, {}, "interrupted: unfinished parts of the picture are black");

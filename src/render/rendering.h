@@ -154,6 +154,7 @@ struct Reconstructions {
     std::vector<Image> images;
     std::vector<size_t> of;
     Refined refined;
+    bool begun = true; ///< false: the user stopped before any part was complete
 };
 /// If the user stops, unreached pixels stay black. `memory`: of the samples, reused from frame to frame if small, because new
 /// pages cost a tenth of the time of simple frames.

@@ -191,7 +191,9 @@ std::string Interpreter::locate(const char* what, const std::string& name, const
     }
     if (file.empty()) {
         std::string looked;
-        for (const std::string& f : folders) looked += (looked.empty() ? "" : ", ") + f;
+        for (size_t i = 0; i < folders.size(); ++i)
+            if (std::find(folders.begin(), folders.begin() + long(i), folders[i]) == folders.begin() + long(i))
+                looked += (looked.empty() ? "" : ", ") + folders[i];
         reporter.error(Rie::NoFile, place, fmt::format("{} \"{}\" was not found", what, name), "looked in " + looked);
         return {};
     }
@@ -285,7 +287,7 @@ void Interpreter::readOpened(const std::string& key, const std::string& file, co
         if (calls) {
             for (const Call& c : *calls) {
                 if (stopped() || !mayReplay(c)) break;
-                execute(c);
+                take(c);
             }
             return place;
         }

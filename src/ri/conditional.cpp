@@ -134,8 +134,10 @@ private:
             if (!take(")")) fail("')' expected");
             return asText(v);
         }
+        const bool braces = take("{");
         std::string w = word();
         if (w.empty()) fail("a variable name is expected");
+        else if (braces && !take("}")) fail("'}' expected");
         return w;
     }
     ConditionValue variable() {
@@ -161,13 +163,13 @@ private:
         }
         if (take("$")) return variable();
         if (c == '\'' || c == '"') {
-            size_t close = text_.find(c, at_ + 1);
-            if (close == std::string::npos) {
-                fail("a string has no end");
-                return num(0);
+            ConditionValue v{true, 0, {}};
+            while (++at_ < text_.size() && text_[at_] != c) {
+                if (text_[at_] == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] == c) ++at_; // the quote itself
+                v.text += text_[at_];
             }
-            ConditionValue v{true, 0, text_.substr(at_ + 1, close - at_ - 1)};
-            at_ = close + 1;
+            if (at_ >= text_.size()) fail("a string has no end");
+            else ++at_;
             return v;
         }
         if (std::isdigit(static_cast<unsigned char>(c)) || c == '.') {

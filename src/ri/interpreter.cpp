@@ -3,6 +3,7 @@
 #include "base/knownoptions.h"
 #include "base/limits.h"
 #include "ri/parser.h"
+#include <cstdlib>
 #include <fmt/format.h>
 
 namespace alpenglow::ri {
@@ -70,7 +71,7 @@ void Interpreter::expand(const std::string& requests, const Call& call, scene::P
     Call c;
     while (parser.next(c)) {
         c.place = call.place;
-        execute(c);
+        take(c);
     }
     everywhere_.swap(everywhere);
 }
@@ -102,6 +103,16 @@ void Interpreter::finish(const SourcePlace& end) {
 }
 
 void Interpreter::execute(const Call& call) {
+    if (!settings.filter) return take(call);
+    std::vector<Call> by;
+    settings.filter(call, by);
+    for (size_t i = 0; i < by.size() && !stopped(); ++i) take(by[i]);
+}
+
+void Interpreter::take(const Call& given) {
+    std::optional<Call> substituted;
+    if (hasVariables_ && !holdsBack()) substituted = withVariables(given);
+    const Call& call = substituted ? *substituted : given;
     if (record(call) || conditional(call)) return;
     if (passesOver()) return;
     if (settings.executed && !telling_) tell(call);
@@ -203,7 +214,7 @@ bool Interpreter::conditional(const Call& call) {
     return true;
 }
 
-bool Interpreter::evaluate(const Call& call) {
+std::optional<ConditionValue> Interpreter::variable(const std::string& name, bool standard) const {
     const auto value = [](const auto& numbers, const auto& texts) -> std::optional<ConditionValue> {
         if (!texts.empty()) return ConditionValue{true, 0, texts[0]};
         if (!numbers.empty()) return ConditionValue{false, double(numbers[0]), {}};
@@ -221,18 +232,25 @@ bool Interpreter::evaluate(const Call& call) {
             known::plainValue(options.hider == "path" && !d->answerUnderPath.empty() ? d->answerUnderPath : d->answer);
         return value(v.numbers, v.texts);
     };
-    const auto lookup = [&](const std::string& name, bool standard) -> std::optional<ConditionValue> {
-        const bool attribute = name.starts_with("Attribute:"), option = name.starts_with("Option:");
-        const std::string key = attribute ? name.substr(10) : option ? name.substr(7) : name;
-        if (key == "Frame" && !attribute) return ConditionValue{false, double(options.frameNumber), {}};
-        std::optional<ConditionValue> v;
-        if (!option) v = set(state.attributes->values, key);
-        if (!v && !attribute) v = set(options.values, key);
-        if (!v && standard && !option) v = unset(known::knownAttributes(), key);
-        if (!v && standard && !attribute) v = unset(known::knownOptions(), key);
-        return v;
-    };
-    return evaluateCondition(call.text(0), lookup, reporter, call.place);
+    const bool attribute = name.starts_with("Attribute:"), option = name.starts_with("Option:");
+    const std::string key = attribute ? name.substr(10) : option ? name.substr(7) : name;
+    if (key == "Frame" && !attribute) return ConditionValue{false, double(options.frameNumber), {}};
+    std::optional<ConditionValue> v;
+    // A name without a class is one of the user's, or of the environment (PRMan).
+    for (const std::string& k : {key, key.find(':') == key.npos ? "user:" + key : std::string()}) {
+        if (!v && !option) v = set(state.attributes->values, k);
+        if (!v && !attribute) v = set(options.values, k);
+    }
+    if (!v && standard && !option) v = unset(known::knownAttributes(), key);
+    if (!v && standard && !attribute) v = unset(known::knownOptions(), key);
+    const char* environment = v || key.find(':') != key.npos ? nullptr : std::getenv(key.c_str());
+    if (environment) v = ConditionValue{true, 0, std::string(environment).substr(0, limits::kTokenBytes)};
+    return v;
+}
+
+bool Interpreter::evaluate(const Call& call) {
+    return evaluateCondition(
+        call.text(0), [this](const std::string& name, bool standard) { return variable(name, standard); }, reporter, call.place);
 }
 
 void Interpreter::closeOpenEnds(size_t conditions, const SourcePlace& where) {

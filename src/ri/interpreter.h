@@ -37,6 +37,13 @@ enum class ErrorStyle { Ignore, Print, Abort };
 /// The purpose of a parameter list. Decides how strictly counts are checked, and in which table names are looked up.
 enum class Use { Shader, Primitive, Option, Attribute, Hider, Display, Other };
 
+/// A value in a condition.
+struct ConditionValue {
+    bool isString = false;
+    double number = 0;
+    std::string text;
+};
+
 using NamedSystems = std::map<std::string, scene::Transform>;
 
 /// What AttributeBegin saves.
@@ -183,6 +190,8 @@ public:
     bool gatheringMotion() const { return capture_ != nullptr; }
     /// True when MakeTexture and its kin of this frame are wanted.
     bool frameWanted() const;
+    /// Option "ribparse" "varsubst" was met.
+    void lookForVariables() { hasVariables_ = true; }
     /// Holds for what comes, here and while the picture is drawn. Errors before it count for nothing.
     void setErrorStyle(ErrorStyle style);
     /// Reports once per request that it is read but has no effect.
@@ -317,6 +326,8 @@ private:
     /// name says that it is of this kind, others are read from the scene's own folders only.
     std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&));
     void run(class Parser& parser);
+    /// execute() without ReaderOptions::filter.
+    void take(const Call& call);
     /// What execute() does, once it is to be done.
     void perform(const Call& call);
     void dispatch(const Call& call);
@@ -349,6 +360,11 @@ private:
     scene::Object forThisWorld(const StoredObject& o) const;
     void rebase(scene::Attributes& a, const scene::Transform& cameraToWorld);
     bool evaluate(const Call& call);
+    /// What a variable of IfBegin or of a text stands for; where it is not set, with `standard` what then holds.
+    std::optional<ConditionValue> variable(const std::string& name, bool standard) const;
+    // variables.cpp: Option "ribparse" "varsubst"
+    Call withVariables(const Call&);
+    void putVariables(std::string& text, char mark, const SourcePlace&);
     void moveTransform(const Motion& m);
     void movePrimitive(const Motion& m);
     void store(std::shared_ptr<scene::Primitive> p);
@@ -407,6 +423,7 @@ private:
     std::vector<std::shared_ptr<const Waiting>> waiting_; ///< of this frame, by number
     std::string part_;                                    ///< of what is made now
     int partsWithin_ = 0;                                 ///< procedurals in it that wait
+    bool hasVariables_ = false;                           ///< texts may have variables
     bool making_ = false;                                 ///< what is in procedurals that waited is being made
     bool replaying_ = false;                              ///< inside an archive that was read before
     bool telling_ = false;   ///< a request that was passed on is executed: what it makes of itself is not
@@ -420,11 +437,6 @@ bool fitVariables(scene::Primitive& p, Reporter& reporter);
 
 /// Value of an IfBegin expression, docs/design/ri.md. `lookup` gives a variable's numbers or strings, or nothing; where it is not
 /// set, with `standard` what then holds (known::OptionDescription::answer).
-struct ConditionValue {
-    bool isString = false;
-    double number = 0;
-    std::string text;
-};
 using ConditionLookup = std::function<std::optional<ConditionValue>(const std::string& name, bool standard)>;
 /// Unknown variables and syntax errors are reported; they are false.
 bool evaluateCondition(const std::string& text, const ConditionLookup& lookup, Reporter& reporter, const SourcePlace& place);

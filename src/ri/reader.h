@@ -42,6 +42,9 @@ struct ReaderOptions {
     /// Comments of the stream, as ReadArchive's callback gets them: kind "comment" or "structure", text after # or ##. Those
     /// inside a request and behind it come once it is executed.
     std::function<void(const std::string& kind, const std::string& text)> comments;
+    /// Set: called with each request of streams and archives that are read; what it adds to `by` is executed in its place. Not
+    /// with what inline archives repeat, which has passed it when it was stored.
+    std::function<void(const Call&, std::vector<Call>& by)> filter;
     /// Set: called with each request before it is executed, and nothing is kept of primitives, so that streams of any length are
     /// read in bounded memory; frames are empty. In place of archives, and of procedurals that may be made, come the requests
     /// that are in them; conditions are decided. What is left open by an archive is closed.

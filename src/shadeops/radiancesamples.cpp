@@ -264,8 +264,10 @@ color NAME(shader handle;LIGHTS output color diffuseresult; output color specula
 
 constexpr const char* kSpecularText = R"(
 color indirectspecular(shader handle; float bias; float maxdist; uniform string label; uniform string subset;
-                       uniform string hitmode; uniform string hitsides; float samplebase; uniform string integrationdomain) {
+                       uniform string hitmode; uniform string hitsides; float samplebase; uniform string integrationdomain;
+                       point position; float usemotionbias) {
     extern point P;
+    point from = position[0] < 1e38 ? position : P;
     vector direction[];
     float distance[], materialPdf[], lightPdf[], summedPdf[];
     color radiance[], materialResponse[], summedResponse[];
@@ -275,8 +277,8 @@ color indirectspecular(shader handle; float bias; float maxdist; uniform string 
     color sum = 0;
     for (i = 0; i < n; i += 1)
         if (materialPdf[i] > 0)
-            sum += trace(P, direction[i], "bias", bias, "maxdist", maxdist, "label", label, "subset", subset, "hitmode", hitmode,
-                         "hitsides", hitsides) * materialResponse[i] / (n * materialPdf[i]);
+            sum += trace(from, direction[i], "bias", bias, "maxdist", maxdist, "label", label, "subset", subset, "hitmode",
+                         hitmode, "hitsides", hitsides) * materialResponse[i] / (n * materialPdf[i]);
     return sum;
 }
 )";
@@ -290,7 +292,9 @@ std::vector<OptionalParameter> specularParameters() {
             {kS, "hitmode", false, "\"default\"", "primitive, shader or default"},
             {kS, "hitsides", false, "\"\"", "front, back, both or reversed"},
             {kF, "samplebase", false, "0", "accepted and ignored: rays start at the point"},
-            {kS, "integrationdomain", false, "\"\"", "accepted and ignored: the samples say where rays go"}};
+            {kS, "integrationdomain", false, "\"\"", "accepted and ignored: the samples say where rays go"},
+            {kP, "position", false, "1e38", "where the rays start; from 1e38 on: P"},
+            {kF, "usemotionbias", false, "0", "accepted and ignored: rays start where the surface is at their time"}};
 }
 
 /// Adds a shadeop written in RSL; AXES in its text stands for kAxes.

@@ -5,13 +5,13 @@ namespace alpenglow::rsl {
 namespace {
 
 /// Adds a shadeop written in RSL.
-Shadeop& addRayTest(std::vector<Shadeop>& list, const char* name, const char* signature, const char* doc, const char* source,
-                    const char* rsl) {
+Shadeop& addRayTest(std::vector<Shadeop>& list, const char* name, std::vector<Signature> signatures, const char* doc,
+                    const char* source, const char* rsl) {
     Shadeop op;
     op.section = "Ray tracing";
     op.source = source;
     op.name = name;
-    op.signatures = sigs({{signature}});
+    op.signatures = std::move(signatures);
     op.contexts = kSurface | kVolume | kLight;
     op.lowering = Lowering::Rsl;
     op.derivative = DerivativeRule::Inherent;
@@ -23,22 +23,30 @@ Shadeop& addRayTest(std::vector<Shadeop>& list, const char* name, const char* si
 }
 
 void addVisibility(std::vector<Shadeop>& list) {
-    addRayTest(list, "visibility", "color visibility(point a, point b; pairs)",
-               "Visibility between two points: transmission(a, b).", "BMRT",
-               R"(
+    addRayTest(
+        list, "visibility", sigs({{"color visibility(point a, point b; pairs)"}, {"float visibility(point a, point b; pairs)"}}),
+        "Visibility between two points: transmission(a, b). The float form is Pixie's: the mean of the components.", "BMRT",
+        R"(
 color visibility(point a; point b; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias;
                  float maxdist) {
     return transmission(a, b, "label", label, "subset", subset, "excludesubset", excludesubset, "hitmode", hitmode,
                         "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
 }
+float visibility(point a; point b; string label; string subset; string excludesubset; string hitmode; string hitsides; float bias;
+                 float maxdist) {
+    color c = transmission(a, b, "label", label, "subset", subset, "excludesubset", excludesubset, "hitmode", hitmode,
+                           "hitsides", hitsides, "bias", bias, "maxdist", maxdist);
+    return (comp(c, 0) + comp(c, 1) + comp(c, 2)) / 3;
+}
 )");
-    list.back().examples = {{"visibility(P, P + N)", "1 1 1", "", kNothing}};
+    list.back().examples = {{"color visibility(P, P + N)", "1 1 1", "", kNothing},
+                            {"float visibility(P, P + N)", "1", "", kNothing}};
 }
 
 /// Where a ray meets something.
 void addHitTests(std::vector<Shadeop>& list) {
     addRayTest(
-        list, "rayhittest", "float rayhittest(point from; vector dir; output point Ph, output vector Nh; pairs)",
+        list, "rayhittest", sigs({{"float rayhittest(point from; vector dir; output point Ph, output vector Nh; pairs)"}}),
         "Distance from `from` along dir to the nearest surface that is visible to transmission rays, in units of length; above "
         "1e30 for none. Ph becomes "
         "the point that was hit, Nh the normal there; both stay as they are when nothing was hit.",
@@ -60,9 +68,8 @@ float rayhittest(point from; vector dir; output point Ph; output vector Nh; stri
     list.back().examples = {{"rayhittest(P, N, p, n)", "2", "point p = 0; vector n = 0;", "a surface stands 2 away along N"}};
     addRayTest(
         list, "fulltrace",
-        "float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output vector "
-        "Nhit; output point Pmiss; output "
-        "vector Rmiss; pairs)",
+        sigs({{"float fulltrace(point pos; vector dir; output color hitcolor; output float hitdist; output point Phit; output "
+               "vector Nhit; output point Pmiss; output vector Rmiss; pairs)"}}),
         "Traces a ray from pos along dir. On a hit 1, with the colour, the distance, the point and the normal of the hit; else "
         "0, with Pmiss = pos and Rmiss = dir, "
         "the ray that saw nothing, hitcolor the light from there and hitdist above 1e30. What does not apply stays as it is.",
@@ -107,7 +114,7 @@ void addRayOptions(std::vector<Shadeop>& list) {
 
 void addBump(std::vector<Shadeop>& list) {
     Shadeop& bump =
-        addRayTest(list, "bump", "point bump(string name; normal norm; vector dPds, vector dPdt; pairs)",
+        addRayTest(list, "bump", sigs({{"point bump(string name; normal norm; vector dPds, vector dPdt; pairs)"}}),
                    "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first "
                    "channel of the texture "
                    "is read at s, t (or at ss, tt) and beside them, and its slopes along dPds and dPdt tilt the normal.",

@@ -275,8 +275,8 @@ void addPhotonMaps(std::vector<Shadeop>& list) {
                 "is divided by the area of the disc that reaches to the one after them. Hider \"photon\" writes "
                 "maps; where there is no file of "
                 "the name and a light has attribute light:emitphotons 1, the map is made before the picture begins. "
-                "The float form is the luminance.");
-    list.back().examples = {{"photonmap(\"none.map\", P, N)", "0"}};
+                "The float form is the luminance. Without n (Pixie), N.");
+    list.back().examples = {{"photonmap(\"none.map\", P, N)", "0"}, {"photonmap(\"none.map\", P)", "0"}};
     photonmap.bias = Bias::Biased;
     photonmap.biasReason = "density estimate over a disc";
     photonmap.optional = {

@@ -28,10 +28,13 @@ std::vector<Shadeop> stringShadeops() {
         ("Prints to standard output, once per sample, in the order of samples. " + conversions).c_str())
         .pure = false;
     list.back().examples = {{"printf(\"u is %g\", u)", "u is 0.5"}};
-    add("print", sigs({{"void print(string pattern)"}, {"void print(string pattern; any value, ...)"}}), Lowering::Service,
-        "Like printf(), and ends the line.")
+    add("print",
+        sigs({{"void print(string pattern)"}, {"void print(string pattern; any value, ...)"}, {"void print(any value, ...)"}}),
+        Lowering::Service,
+        "Like printf(), and ends the line. Where the first argument is no text, or a text without conversions, the values are "
+        "printed one after the other with blanks between them (PRMan).")
         .pure = false;
-    list.back().examples = {{"print(\"u is %g\", u)", "u is 0.5"}};
+    list.back().examples = {{"print(\"u is %g\", u)", "u is 0.5"}, {"print(u, N)", "0.5 [0 0 1]"}};
     add("concat", sigs({{"string concat(string a, string b, ...)"}}), Lowering::Service, "Joins strings.").examples = {
         {"concat(\"a\", \"b\", \"c\")", "abc"}};
     add("match", sigs({{"float match(string pattern, string subject)"}}), Lowering::Service,

@@ -91,10 +91,10 @@ TEST_F(Flags, ThoseThatAskForWhatIsNotDoneAreNoted) {
     EXPECT_EQ(status, 0) << errors();
 }
 
-// A file of glyphs of size 0 has a warning for each: the first three, and how many more there were.
+// A file that misspells a request for each of its shapes: the first three, and how many more there were.
 TEST_F(Flags, WarningsThatRepeatAreSummedUp) {
     std::string rib = "Format 8 8 1\nWorldBegin\nTranslate 0 0 5\nSphere 1 -1 1 360\n";
-    for (int i = 0; i < 40; ++i) rib += "Polygon \"P\" [0 0 0 0 0 0 0 0 0]\n";
+    for (int i = 0; i < 40; ++i) rib += "GeometricApproximation \"tesselation\" 64\n";
     write("many.rib", rib + "WorldEnd\n");
     const auto count = [&](const std::string& part) {
         const std::string all = errors();

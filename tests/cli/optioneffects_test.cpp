@@ -92,13 +92,13 @@ TEST_F(OptionEffects, HitModes) {
         }
 }
 
-TEST_F(OptionEffects, VariablesInRibAreToldOf) {
-    write("a.rib",
-          "Option \"ribparse\" \"string varsubst\" \"$\"\nFormat 4 4 1\nDisplay \"a.exr\" \"openexr\" \"rgb\"\nWorldBegin\n"
-          "Sphere 1 -1 1 360\nWorldEnd\n");
-    run("render a.rib");
-    EXPECT_EQ(status, 0);
-    EXPECT_NE(text("err").find("variables in RIB (varsubst) are not substituted"), std::string::npos) << text("err");
+// More samples than the memory has room for: the message names them.
+TEST_F(OptionEffects, SamplesWithoutMemory) {
+    write("a.rib", "Format 640 480 1\nPixelSamples 2000 2000\nHider \"hidden\"\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+    run("render --memory-limit 600M -o a.exr a.rib");
+    const std::string said = text("err");
+    EXPECT_NE(said.find("the 2000 x 2000 samples of each pixel (PixelSamples) take "), std::string::npos) << said;
+    EXPECT_NE(said.find("the limit is 600 MiB; --memory-limit sets another"), std::string::npos) << said;
 }
 
 } // namespace optioneffects_test

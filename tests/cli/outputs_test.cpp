@@ -292,4 +292,18 @@ TEST_F(Outputs, PartsAndGaps) {
     EXPECT_EQ(go("merge --expect 8 p1.exr -o m.exr"), 2);
 }
 
+// The repelling plane of an old file reads the depth map that the same file makes (Pixar's application note 31): the blob over a
+// wall at 4 ends above it.
+TEST_F(Outputs, BlobbiesAreRepelledByADepthMapOfTheScene) {
+    const std::string blob = "Blobby 2 [1001 0 1003 0 16 0 2 0 1] [2 0 0 0 0 2 0 0 0 0 2 0 0 0 4 1  1 1 1 0] [\"wall.z\"]\n";
+    write("blob.rib",
+          "Format 16 16 1\nPixelSamples 1 1\nProjection \"orthographic\"\nFrameBegin 1\nDisplay \"wall.z\" \"zfile\" "
+          "\"z\"\nWorldBegin\nPolygon \"P\" [-9 -9 4  -9 9 4  9 9 4  9 -9 4]\nWorldEnd\nFrameEnd\nFrameBegin 2\nDisplay "
+          "\"b.exr\" \"openexr\" \"rgba\"\nProjection \"orthographic\"\nWorldBegin\n" +
+              blob + "WorldEnd\nFrameEnd\n");
+    EXPECT_EQ(render("-o b.exr blob.rib"), 0) << err;
+    EXPECT_EQ(err.find("depth map"), std::string::npos) << err;
+    EXPECT_EQ(read("wall.z").substr(0, 4), "\xab\x67\x08\x2f");
+}
+
 } // namespace outputs_test

@@ -116,4 +116,27 @@ TEST_F(RibFilters, LibrariesThatThrowOrTakeNothing) {
 
 } // namespace
 
+// `render --filter`, and prman's -rif: requests of scenes and their archives pass it once, those in front of them not.
+TEST_F(RibFilters, ScenesAreDrawnAsFiltered) {
+    write("part.rib", "Color 0 1 0\nSphere 1 -1 1 360\n");
+    write("scene.rib", "Format 8 8 1\nPixelSamples 1 1\nDisplay \"a.exr\" \"openexr\" \"rgb\"\nArchiveBegin \"x\"\nScale 2 2 2\n"
+                       "ArchiveEnd\nWorldBegin\nSurface \"constant\"\nReadArchive \"x\"\nReadArchive \"part.rib\"\nWorldEnd\n");
+    write(
+        "f.py",
+        "def filter(request, args, params):\n"
+        "    if request == 'Color': return [('Color', [[args[0][1], args[0][2], args[0][0]]], {})] if isinstance(args[0], list) "
+        "else [('Color', [args[1], args[2], args[0]], {})]\n"
+        "    if request == 'Scale': return [('Scale', [.5 * x for x in args], {}), 'Translate 0 0 5']\n"
+        "    if request == 'Format': return False\n");
+    const std::string more = "--no-rc --rib 'Format 4 4 1' --pixel 2,2 ";
+    EXPECT_EQ(run("render " + more + "--filter f.py scene.rib", "2> said.txt"), "1 0 0 1\n") << read("said.txt");
+    EXPECT_EQ(run("render " + more + "-rif f.py scene.rib", "2> said.txt"), "1 0 0 1\n") << read("said.txt");
+    EXPECT_EQ(run("render " + more + "--filter f.py --filter f.py scene.rib", "2> said.txt"), "0 0 1 1\n") << read("said.txt");
+    run("render --filter none.py scene.rib", "2> said.txt");
+    EXPECT_EQ(status, 2);
+    EXPECT_NE(read("said.txt").find("none.py"), std::string::npos);
+    run("render --filter f.py --frames-at-once 2 scene.rib", "2> said.txt");
+    EXPECT_EQ(status, 2);
+}
+
 } // namespace ribfilters_test

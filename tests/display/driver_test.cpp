@@ -354,4 +354,40 @@ TEST(Diff, NonFiniteAndSizes) {
     EXPECT_EQ(d.errors(), 2);
 }
 
+// The form that Pixar's programs have: magic, two sizes of 16 bits, world to screen, world to camera, depths; screen space is -1
+// to 1, upward. What a crop window leaves out is far away.
+TEST(Drivers, ZfilesHaveTheirForm) {
+    Scratch s;
+    Image m = makeImage(2, 1, {"z"});
+    m.data = {3.25f, std::numeric_limits<float>::infinity()};
+    DriverSetup u = setupFor(s, "zfile", "light.z", m);
+    u.originX = 1, u.originY = 2, u.fullWidth = 4, u.fullHeight = 3;
+    u.worldToCamera = translateMatrix(0, 0, 5);
+    u.worldToNDC = scaleMatrix(0.5, -0.5, 1) * translateMatrix(0.5, 0.5, 0); // of the screen itself
+    Diagnostics d;
+    ASSERT_TRUE(writeDisplay(u, m, d)) << messages(d);
+    std::ifstream in(s / "light.z", std::ios::binary);
+    const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+    ASSERT_EQ(bytes.size(), 8u + 2 * 64 + 4 * 12);
+    const auto at = [&]<class T>(size_t i, T) {
+        T v;
+        std::memcpy(&v, bytes.data() + i, sizeof v);
+        return v;
+    };
+    EXPECT_EQ(at(0, uint32_t(0)), 0x2f0867abu);
+    EXPECT_EQ(at(4, uint16_t(0)), 4);
+    EXPECT_EQ(at(6, uint16_t(0)), 3);
+    for (size_t i = 0; i < 16; ++i) {
+        EXPECT_EQ(at(8 + 4 * i, 0.f), i % 5 == 0 ? 1 : 0) << i;
+        EXPECT_EQ(at(72 + 4 * i, 0.f), i % 5 == 0 ? 1 : i == 14 ? 5 : 0) << i;
+    }
+    for (size_t i = 0; i < 12; ++i) EXPECT_EQ(at(136 + 4 * i, 0.f), i == 9 ? 3.25f : 1e30f) << i;
+    // OpenEXR where the name or the channels ask for it.
+    for (const auto& [type, name] : {std::pair{"zfile", "light.exr"}, {"shadow", "light.shd"}}) {
+        ASSERT_TRUE(writeDisplay(setupFor(s, type, name, m), m, d)) << messages(d);
+        std::ifstream exr(s / name, std::ios::binary);
+        EXPECT_EQ(exr.get(), 0x76) << name;
+    }
+}
+
 } // namespace driver_test

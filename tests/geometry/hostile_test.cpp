@@ -258,4 +258,25 @@ TEST(Dice, DisplacementMovesTheMeshAndReportsItsBound) {
     }
 }
 
+// Exporters write them by the thousand: one message of each kind, with the number.
+TEST(Hostile, PolygonsWithoutAreaAreCounted) {
+    const std::vector<float> none = {0, 0, 0, 1, 1, 1, 2, 2, 2};
+    for (const auto& [polygons, said] :
+         {std::pair{1, "Polygon has no area; it is not drawn"}, {3, "Polygon has no area; it is not drawn (this and 2 more)"}}) {
+        scene::Frame f;
+        for (int i = 0; i < polygons; ++i) {
+            auto p = polygon(none);
+            p->place = {"a.rib", 10 + i, 1};
+            p->attributes = std::make_shared<scene::Attributes>();
+            f.primitives.push_back(p);
+        }
+        Diagnostics d;
+        EXPECT_TRUE(buildShapes(f, d).empty());
+        ASSERT_EQ(d.all().size(), 1u);
+        EXPECT_EQ(d.all()[0].message, said);
+        EXPECT_EQ(d.all()[0].place.line, 10);
+        EXPECT_EQ(d.warnings(), 1);
+    }
+}
+
 } // namespace hostile_test

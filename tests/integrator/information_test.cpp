@@ -132,8 +132,11 @@ TEST(Information, RaysOfBmrt) {
     const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nAttribute \"visibility\" \"transmission\" "
                              "1\nSurface \"constant\"\nColor .5 .25 1\n"
                              "Polygon \"P\" [-9 2 -9  -9 2 9  9 2 9  9 2 -9]\nAttributeEnd\n";
-    auto of = [&](const std::string& surface) {
-        return Scene(inWorld(card + "Surface " + surface + "\n" + kFloor), under(Hider::Raytrace)).one(kView);
+    // Pixie's float: the mean of what is left of the colours behind a film of opacity (.6, .3, .9).
+    writeShader("pixiesees", "surface pixiesees() { Oi = 1; float a = visibility(P, P + vector(0, 1, 0)), b = visibility(P, P + "
+                             "vector(0, 3, 0)); Ci = color(a, b, 0); }\n");
+    auto of = [&](const std::string& surface, const std::string& film = "") {
+        return Scene(inWorld(film + card + "Surface " + surface + "\n" + kFloor), under(Hider::Raytrace)).one(kView);
     };
     auto near = [](const Color& c, const Color& want, const char* what) {
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(c[k], want[k], 1e-4) << what << " " << k;
@@ -142,6 +145,7 @@ TEST(Information, RaysOfBmrt) {
     near(of("\"bmrtfull\" \"up\" -1"), Color(-1, 0, -1), "fulltrace that meets nothing");
     near(of("\"bmrthit\""), Color(2, 2, 1), "rayhittest");
     near(of("\"bmrtsees\""), Color(1), "visibility");
+    near(of("\"pixiesees\"", "Opacity .6 .3 .9\n"), Color(1, .4f, 0), "visibility as a float");
 }
 // A light's outputchannel() is an output of the surface: of what the light found there; "light:" keeps it to itself. Not where
 // the surface has that output.

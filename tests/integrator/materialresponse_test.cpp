@@ -88,6 +88,30 @@ TEST(Plausible, RaysWhereTheMaterialWantsThem) {
     EXPECT_NEAR(c[2], 1 * each, 1e-5);
 }
 
+// "position": where the rays start. Above the card they meet nothing.
+TEST(Plausible, IndirectSpecularStartsAtAPosition) {
+    writeShader("card", "surface card() { Oi = 1; Ci = color(.5, .25, 1); }\n");
+    writeShader("starts", R"(class starts() {
+    public void generateSamples(string type; output __radiancesample samples[]) {
+        resize(samples, 1);
+        samples[0]->direction = vector(0, 1, 0);
+        samples[0]->setMaterialResponse(.5, .25);
+    }
+    public void surface(output color Ci, Oi) {
+        Ci = color(comp(indirectspecular(this, "position", P + vector(0, 2, 0)), 0),
+                   comp(indirectspecular(this, "position", P + vector(0, .5, 0), "usemotionbias", 1), 1),
+                   comp(indirectspecular(this), 2));
+        Oi = 1;
+    }
+})");
+    const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"card\"\nPolygon \"P\" [-9 1 -9  -9 "
+                             "1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
+    const Color c = Scene(inWorld(card + "Surface \"starts\"\n" + kFloor), under(Hider::Raytrace)).one(kView);
+    EXPECT_EQ(c[0], 0);
+    EXPECT_NEAR(c[1], .25 * 2, 1e-5);
+    EXPECT_NEAR(c[2], 1 * 2, 1e-5);
+}
+
 // Of another shader object, and of some of the lights only: the light at 60 degrees gives 1 (diffuse) and 2 / 4, the other 1/2
 // and 1/8.
 TEST(Plausible, OtherObjectsAndChosenLights) {
@@ -156,6 +180,8 @@ TEST(Plausible, RaysWhereAnotherMaterialWantsThem) {
         color close = indirectspecular(m, "bias", .01, "maxdist", .5, "label", "near", "subset", "", "hitmode", "default",
                                        "hitsides", "both", "samplebase", 1, "integrationdomain", "sphere");
         if (comp(close, 0) != 0) Ci = -1;
+        color above = indirectspecular(m, "position", P + vector(0, 2, 0), "usemotionbias", 1);
+        if (comp(above, 0) != 0) Ci = -2;
         Oi = 1; } }
 )");
     const std::string card = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"card\"\nPolygon \"P\" [-9 1 -9  -9 "

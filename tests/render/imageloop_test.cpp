@@ -251,4 +251,54 @@ TEST(ImageLoop, BandsShareTheSamplesBetweenThem) {
     EXPECT_EQ(pictures[1].data, pictures[2].data);
 }
 
+namespace {
+
+/// Stops the run at one of its calls, whose samples are then unfinished.
+struct Stopper final : Tracer {
+    StopFlag& stop;
+    int left;
+    integrator::Counters counts;
+    Stopper(StopFlag& s, int calls) : stop(s), left(calls) {}
+    bool trace(std::span<const integrator::CameraRay>, std::span<integrator::SampleResult> out, const StopFlag*) override {
+        if (left-- == 0) stop = 1;
+        for (integrator::SampleResult& r : out) r.color = Color(1.f), r.opacity = Color(1.f), r.z = 1;
+        return left >= 0;
+    }
+    const integrator::Counters& counters() const override { return counts; }
+};
+
+} // namespace
+
+// Ctrl-C while the first tiles are traced: a picture of an earlier run is better than a black one. Later, what is done is
+// written.
+TEST(ImageLoop, NothingIsWrittenBeforeAPartIsComplete) {
+    for (const int complete : {0, 2}) {
+        Folder dir;
+        auto f = slopeFrame();
+        StopFlag stop = 0;
+        RenderSettings s;
+        s.output = dir / "a.exr";
+        s.threads = 1;
+        s.allowWrite = true;
+        s.stop = &stop;
+        Diagnostics diags;
+        Progress progress{ProgressMode::None};
+        Renderer renderer(
+            s, test::plainEngine<World>([&](const world::World&) { return std::make_unique<Stopper>(stop, complete); }), diags,
+            progress, {});
+        renderer.render(f);
+        EXPECT_TRUE(renderer.outcome().interrupted);
+        ASSERT_EQ(diags.all().size(), 1u);
+        if (!complete) {
+            EXPECT_FALSE(fs::exists(s.output));
+            EXPECT_EQ(diags.all()[0].message, "interrupted before any part was complete; no picture is written");
+        } else {
+            const display::Image i = read(s.output);
+            EXPECT_EQ(i.pixel(0, 0)[0], 1);
+            EXPECT_EQ(i.pixel(39, 19)[0], 0);
+            EXPECT_EQ(diags.all()[0].message, "interrupted: unfinished parts of the picture are black");
+        }
+    }
+}
+
 } // namespace imageloop_test

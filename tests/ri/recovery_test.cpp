@@ -181,6 +181,9 @@ TEST(Conditions, Expressions) {
     EXPECT_TRUE(holds("concat('a', 'b', 'c') == $user:s"));
     EXPECT_TRUE(holds("$(concat('user:', 'x')) == 3"));
     EXPECT_TRUE(holds("$user:s =~ 'b' && $user:s =~ '^a.*c$' && $user:x =~ '[0-9]'"));
+    EXPECT_TRUE(holds("${user:x} == 3 && ${s} == 'abc'"));
+    EXPECT_TRUE(holds("'it\\\\'s' =~ '^it.s$' && 'a*c' =~ 'a\\\\*c'"));
+    EXPECT_FALSE(holds("${user:x == 3", 1));
     EXPECT_FALSE(holds("$user:s =~ '^b'"));
     EXPECT_FALSE(holds("$user:s =~ '('", 1));
     EXPECT_FALSE(holds("$user:nothing == 1", 1));

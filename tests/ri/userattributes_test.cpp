@@ -33,4 +33,52 @@ TEST(UserAttributes, FollowTheBlocks) {
     EXPECT_EQ(moving->only().code, Rie::BadMotion);
 }
 
+// Option "ribparse" "varsubst" (PRMan): what RenderMan for Maya and for Blender write.
+TEST(VariablesInTexts, StandForWhatConditionsHave) {
+    setenv("ALPENGLOW_TEST_FOLDER", "/proj", 1);
+    const std::string head = "Option \"ribparse\" \"string varsubst\" [\"$\"]\nOption \"user\" \"string look\" [\"matte\"]\n"
+                             "Option \"user\" \"float k\" 2.5\n";
+    const auto c = read(head + "FrameBegin 7\nDisplay \"${ALPENGLOW_TEST_FOLDER}/a.${Frame}.$user:k.tif\" \"file\" \"rgb\"\n"
+                               "WorldBegin\nAttribute \"user\" \"string map\" \"w.tx\"\nSurface \"$look\" \"string file\" "
+                               "\"$map:${map}\"\nSphere 1 -1 1 360\nWorldEnd\nFrameEnd\n");
+    EXPECT_EQ(c->messages(), "");
+    ASSERT_EQ(c->frame().options.displays.size(), 1u);
+    EXPECT_EQ(c->frame().options.displays[0].name, "/proj/a.7.2.5.tif");
+    const auto& surface = c->primitive().attributes->surface;
+    EXPECT_EQ(surface->name, "matte");
+    ASSERT_EQ(surface->params.size(), 1u);
+    EXPECT_EQ(surface->params[0].strings[0], "w.tx:w.tx");
+}
+
+TEST(VariablesInTexts, StayWhereNothingIsSet) {
+    const auto c = read("Option \"ribparse\" \"string varsubst\" [\"$\"]\nDisplay \"${none}$none.$5 $ ${} ${a.tif\" \"file\" "
+                        "\"rgb\"\nWorldBegin\nWorldEnd\n");
+    EXPECT_EQ(c->frame().options.displays.at(0).name, "${none}$none.$5 $ ${} ${a.tif");
+    EXPECT_NE(c->first().message.find("$none is not set"), std::string::npos);
+    EXPECT_EQ(c->diagnostics.errors(), 0);
+    // Not asked for, or no more: texts stay as they are, silently. What an archive stores gets them when it is read.
+    EXPECT_EQ(read("Display \"$HOME.tif\" \"file\" \"rgb\"\nWorldBegin\nWorldEnd\n")->frame().options.displays.at(0).name,
+              "$HOME.tif");
+    const auto later = read("Option \"ribparse\" \"string varsubst\" \"@\"\nOption \"user\" \"string s\" \"one\"\n"
+                            "ArchiveBegin \"x\"\nSurface \"@{s}\"\nArchiveEnd\nOption \"user\" \"string s\" \"two\"\nWorldBegin\n"
+                            "ReadArchive \"x\"\nSphere 1 -1 1 360\nWorldEnd\n");
+    EXPECT_EQ(later->messages(), "");
+    EXPECT_EQ(later->primitive().attributes->surface->name, "two");
+}
+
+// A name without a class is one of the user's or of the environment: RenderMan for Maya asks whether its folders are set.
+TEST(VariablesInTexts, ConditionsKnowTheEnvironment) {
+    setenv("ALPENGLOW_TEST_FOLDER", "/proj", 1);
+    const auto frame = [](const std::string& condition) {
+        const auto c = read("Option \"user\" \"float deep\" 3\nWorldBegin\nIfBegin \"" + condition +
+                            "\"\nSphere 1 -1 1 360\nIfEnd\nWorldEnd\n");
+        EXPECT_EQ(c->messages(), "");
+        return c->frame().primitives.size();
+    };
+    EXPECT_EQ(frame("defined(ALPENGLOW_TEST_FOLDER)"), 1u);
+    EXPECT_EQ(frame("!defined(ALPENGLOW_TEST_NO_FOLDER)"), 1u);
+    EXPECT_EQ(frame("$ALPENGLOW_TEST_FOLDER == '/proj'"), 1u);
+    EXPECT_EQ(frame("$deep > 2"), 1u);
+}
+
 } // namespace userattributes_test

@@ -105,13 +105,13 @@ void PictureDriver::quantiseInto(Image& m) const {
 
 bool PictureDriver::close(Diagnostics& diags) {
     WriteOptions o = chooseSamples(diags);
-    if (!o.quantised) return writeImage(setup_.name, image_, o, diags);
+    if (!o.quantised) return write(setup_.name, image_, o, diags);
     std::vector<float> floats = std::move(image_.data); // they stay, for a later close()
     Image codes = image_;
     image_.data = std::move(floats);
     codes.data = image_.data;
     quantiseInto(codes);
-    return writeImage(setup_.name, codes, o, diags);
+    return write(setup_.name, codes, o, diags);
 }
 
 namespace {

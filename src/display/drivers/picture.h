@@ -15,6 +15,10 @@ protected:
     virtual Format format(const DriverSetup&, Diagnostics&) = 0;
     /// Whether the numbers are data that must stay floats (depth).
     virtual bool data() const { return false; }
+    /// Writes the file, when it is complete. Returns false after an error, which is reported.
+    virtual bool write(const std::string& name, const Image& image, const WriteOptions& o, Diagnostics& diags) {
+        return writeImage(name, image, o, diags);
+    }
 
 private:
     WriteOptions chooseSamples(Diagnostics&);

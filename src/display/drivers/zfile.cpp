@@ -1,5 +1,6 @@
-// Display types "zfile" and "shadow", and "deepshad", which includes layers behind the first surface: depth as floats in OpenEXR
-// under the given name, with the matrices for shadow().
+// Display types "zfile" and "shadow", and "deepshad", which includes layers behind the first surface: depth as floats under the
+// given name, with the matrices for shadow(): a zfile is what other programs and Blobby's repelling planes read, the rest
+// OpenEXR.
 #include "display/drivers/picture.h"
 #include <algorithm>
 
@@ -19,10 +20,21 @@ public:
     }
 };
 
+std::string small(std::string name) {
+    for (char& c : name) c = char(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
+    return name;
+}
+
 class Zfile : public DepthDriver {
+    bool write(const std::string& name, const Image& image, const WriteOptions& o, Diagnostics& diags) override {
+        return exr_ ? writeImage(name, image, o, diags) : writeZfile(name, image, o.policy, diags, o.place);
+    }
+    bool exr_ = false;
 
 public:
     bool open(const DriverSetup& s, Diagnostics& diags) override {
+        exr_ =
+            small(s.type) != "zfile" || s.channels != std::vector<std::string>{"z"} || formatOfExtension(s.name) == Format::Exr;
         bool depth = std::find(s.channels.begin(), s.channels.end(), "z") != s.channels.end();
         if (!depth)
             diags.report(Severity::Warning, Rie::Consistency, s.place,
@@ -48,9 +60,9 @@ public:
 
 const DriverDescriptor zfileDriver{
     {"zfile", "shadow", "shadowmap", "z"},
-    "Depth, camera space, as floating point OpenEXR whatever the extension, with the matrices worldToCamera and worldToNDC in "
-    "its header. "
-    "MakeShadow and shadow() read it.",
+    "Depth, camera space, with the matrices of the camera. zfile: the format of this name (32 bits a pixel, in the byte order of "
+    "the machine), unless the name ends in .exr; the others, and depth with other channels: floating point OpenEXR whatever the "
+    "extension. MakeShadow and shadow() read both, repelling planes of Blobby the first.",
     []() -> std::unique_ptr<Driver> { return std::make_unique<Zfile>(); }};
 
 const DriverDescriptor deepDriver{{"deepshad", "dsm", "deepshadow", "dshadow"},

@@ -217,8 +217,7 @@ void option(Interpreter& in, const Call& c) {
             }
             p.strings[0] = now;
         }
-        if (key == "ribparse:varsubst" && !p.strings.empty() && !p.strings[0].empty())
-            in.incapable(c, "variables in RIB (varsubst) are not substituted");
+        if (key == "ribparse:varsubst" && !p.strings.empty()) in.lookForVariables();
         in.options.values[key] = std::move(p);
     }
 }

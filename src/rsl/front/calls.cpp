@@ -132,6 +132,18 @@ static void nameSources(Expr& e) {
     }
 }
 
+/// photonmap(map, P) of Pixie, unless it is a function of the shader: about the normal of the surface.
+static void addNormal(Expr& e, const Unit& unit) {
+    if (e.text != "photonmap" || e.args.size() < 2 || (e.args.size() > 2 && e.args[2]->kind != ExprKind::String)) return;
+    for (const auto& f : unit.functions)
+        if (f->name == e.text) return;
+    auto normal = std::make_unique<Expr>();
+    normal->kind = ExprKind::Variable;
+    normal->place = e.args[1]->place;
+    normal->text = "N";
+    e.args.insert(e.args.begin() + 2, std::move(normal));
+}
+
 /// The candidates for one call, and why those that do not fit do not.
 struct Checker::Candidates {
     Checker& c;
@@ -238,7 +250,7 @@ void Checker::inferResults(const Expr& e, Info& info) {
 }
 
 void Checker::inferCall(Expr& e, Info& info) {
-    nameSources(e);
+    nameSources(e), addNormal(e, *unit_);
     bool broken = false;
     for (auto& a : e.args) broken |= infer(*a).any;
     if (e.text.empty()) {

@@ -29,6 +29,29 @@ size_t optionalInText(const Shadeop& op) {
                                                     "indirectspecular"};
     return kOps.count(op.name) ? op.optional.size() : 0;
 }
+
+/// Whether a text has conversions of printf().
+bool converts(const std::string& pattern) {
+    for (size_t i = 0; i + 1 < pattern.size(); ++i)
+        if (pattern[i] == '%' && pattern[++i] != '%') return true;
+    return false;
+}
+
+/// print() of values: they get the pattern that shows each, with blanks between them. Returns `signature`.
+const Signature* withPattern(Expr& e, const Shadeop& op, const Signature* signature) {
+    if (op.name != "print") return signature;
+    const auto text = [](const Expr& a) { return a.type.base == Base::String; };
+    const Expr& first = *e.args[0];
+    if (text(first) && (e.args.size() == 1 || first.kind != ExprKind::String || converts(first.text))) return signature;
+    auto pattern = std::make_unique<Expr>();
+    pattern->kind = ExprKind::String;
+    pattern->place = first.place;
+    pattern->type = {Base::String, 0};
+    pattern->varying = false;
+    for (const ExprPtr& a : e.args) pattern->text += std::string(pattern->text.empty() ? "" : " ") + (text(*a) ? "%s" : "%g");
+    e.args.insert(e.args.begin(), std::move(pattern));
+    return signature;
+}
 } // namespace
 
 /// What is the same for all points when the arguments are: whether a message was found, what a file or the frame says, a length,
@@ -157,7 +180,7 @@ void Checker::bindText(Expr& e, const Choice& choice) {
 void Checker::bindShadeop(Expr& e, const Choice& choice) {
     const Shadeop& op = *choice.shadeop;
     e.shadeop = &op;
-    e.signature = choice.signature;
+    e.signature = withPattern(e, op, choice.signature);
     if (op.name == "outputchannel" || op.name == "writeaov") bindChannel(e);
     bindPrimitiveVariable(e);
     static const std::set<std::string_view> kOfHandles = {"getshader", "getshaders", "getvar", "readprimvar", "hasmethod"};

@@ -54,15 +54,16 @@ constexpr const char* kListed = R"(
 
 constexpr const char* kIndirect = R"(
     color __indirect(float bias; float maxdist; uniform string label; uniform string subset; uniform string hitmode;
-                     uniform string hitsides) {
+                     uniform string hitsides; point position) {
         extern point P;
+        point from = position[0] < 1e38 ? position : P;
         __radiancesample samples[];
         generateSamples("specular", samples);
         uniform float i, n = arraylength(samples);
         color sum = 0;
         for (i = 0; i < n; i += 1)
             if (samples[i]->materialPdf > 0)
-                sum += trace(P, samples[i]->direction, "bias", bias, "maxdist", maxdist, "label", label, "subset", subset,
+                sum += trace(from, samples[i]->direction, "bias", bias, "maxdist", maxdist, "label", label, "subset", subset,
                              "hitmode", hitmode, "hitsides", hitsides)
                     * samples[i]->materialResponse / (n * samples[i]->materialPdf);
         return sum;
@@ -166,12 +167,13 @@ Tokens indirectReplacement(const Tokens& t, size_t call, size_t end) {
         Tok kind;
         std::string_view otherwise;
     };
-    constexpr std::array<Optional, 6> kOptional = {{{"\"bias\"", Tok::Number, "-1"},
+    constexpr std::array<Optional, 7> kOptional = {{{"\"bias\"", Tok::Number, "-1"},
                                                     {"\"maxdist\"", Tok::Number, "1e38"},
                                                     {"\"label\"", Tok::String, "\"\""},
                                                     {"\"subset\"", Tok::String, "\"\""},
                                                     {"\"hitmode\"", Tok::String, "\"\""},
-                                                    {"\"hitsides\"", Tok::String, "\"\""}}};
+                                                    {"\"hitsides\"", Tok::String, "\"\""},
+                                                    {"\"position\"", Tok::Number, "1e38"}}};
     const Arguments given = arguments(t, call + 1, end);
     Tokens out = {like(t[call], Tok::Identifier, "__indirect"), t[call + 1]};
     for (const Optional& o : kOptional) {

@@ -280,6 +280,7 @@ void ScatterRays::applyOptions(size_t b, const BatchContext& c) {
 void ScatterRays::keepLobes(size_t b, BatchContext& c) {
     RayBlock& r = v_.rays[b];
     const VertexBlock& v = v_.vertices[b];
+    const bool flies = flight_.on();
     for (int i = 0; i < kBlock; ++i) r.flags[i] = (r.flags[i] & kAskedBits) | (v_.waits ? kFirstBit : 0); // clears the trail
     for (Lanes left = v_.next.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
@@ -303,7 +304,7 @@ void ScatterRays::keepLobes(size_t b, BatchContext& c) {
         }
         r.extra[i] = -1;
         const int32_t share = v_.shareOf(s, point, c.rays[point]);
-        const float indirect = flight_.on() // then the ray's weight includes it
+        const float indirect = flies // then the ray's weight includes it
                                    ? 1
                                    : (v_.next.indirect[i] == 0 ? 1 : v.energyScale[i]) * v_.indirectOf(s, point);
         const bool fades = !s.options.empty() && s.options[point].fade.fades();
@@ -315,7 +316,7 @@ void ScatterRays::keepLobes(size_t b, BatchContext& c) {
         if (c.between) extra.flown = c.flown[point];
         extra.indirect = indirect;
         extra.share = share;
-        if (request && !flight_.on()) single_.addToRay(*request, extra, i, c);
+        if (request && !flies) single_.addToRay(*request, extra, i, c);
         r.extra[i] = store_.newExtra(extra);
     }
     guided_.keep(b, c);

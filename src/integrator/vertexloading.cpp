@@ -54,14 +54,15 @@ void VertexLoading::takeRays(const RayBlock& rays, bool between) {
         v.last |= Lanes(v.bounces[k] - int16_t(rays.path[k] >> 16) - between >= world_.maxDepth_)
                   << k; // scattering in media does not count
     }
-    v.deep[0] = v.deep[1] = v.last;
+    Lanes lost = 0; // in media
     for (int k = 0; k < kBlock; ++k) {
-        if (int16_t(rays.path[k] >> 16) >= limits::kPathDepth) v.deep[0] |= 1u << k, v.deep[1] |= 1u << k;
+        lost |= Lanes(int16_t(rays.path[k] >> 16) >= limits::kPathDepth) << k;
         const PathSample& sample = v_.sampleOf(rays, k);
         v.low[k] = sample.numbers.low();
         v.high[k] = sample.numbers.high();
         v.index[k] = sample.numbers.index();
     }
+    v.deep[0] = v.deep[1] = v.last | lost;
     v.waits = v_.waits;
     for (int q = 0; q < 3; ++q) std::copy_n(v_.waits ? v_.whole : rays.weight[q], kBlock, v.weight[q]); // relative to its target
     std::copy_n(rays.vertex, kBlock, v.vertex);

@@ -27,7 +27,8 @@ struct VertexBlocks final : Stage {
     /// Factor of the light of surfaces that the ray of a lobe carries, without the energy rule.
     float indirectOf(const Site& s, size_t point) const {
         const LobeVertex* const r = s.requestAt(point);
-        if (s.direct || (s.lighting && s.diffuse && !apart.empty() && (apart[point / kBlock] >> point % kBlock & 1))) return 0;
+        const bool called = s.info && s.lighting; // not a lobe of a photon shading model
+        if (s.direct || (called && s.diffuse && !apart.empty() && (apart[point / kBlock] >> point % kBlock & 1))) return 0;
         return r ? r->indirect : indirect.empty() ? 1 : indirect[point];
     }
     /// Sets the keys of the points of a block; the stream is still to be set.

@@ -310,6 +310,24 @@ TEST(BlockPhotons, FlyThroughMediaAndMotion) {
     }
 }
 
+// A photon shading model replaces what the shader says, its indirectdiffuse() as well: the photons are those of another shader.
+TEST(BlockPhotons, ModelsReplaceTheWholeShader) {
+    writeShader("gathers", R"(surface gathers() {
+    normal n = faceforward(normalize(N), I);
+    Ci = Cs * (diffuse(n) + indirectdiffuse(P, n, 8));
+})");
+    for (const char* model : {"matte", "plastic"}) {
+        const std::string of = "Attribute \"photon\" \"string shadingmodel\" \"" + std::string(model) + "\"\n";
+        const auto photons = [&](const std::string& shader) {
+            return flown(roomOf(shader, of), withShipped(true), {.sky = false});
+        };
+        const Flown one = photons("\"matte\""), other = photons("\"gathers\"");
+        const auto scattered = [](const StoredPhoton& p) { return p.photon.bounces > 0; };
+        EXPECT_GT(std::count_if(one.photons.begin(), one.photons.end(), scattered), 200) << model;
+        EXPECT_EQ(differences(one, other), 0u) << model;
+    }
+}
+
 // Calls whose arguments are read one by one: names that a shader computes, rays from elsewhere, points that a shader moved, calls
 // whose order differs, numbers that are not usual; for photons, and for paths that gather them.
 TEST(BlockPhotons, AtRequestsMadeOneByOne) {

@@ -1,5 +1,5 @@
 // First stage over vertices: from a batch's structures to columns. Reads points (or surfaces), rays, transparency; writes
-// VertexBlocks::vertices and rays. Costs about 10 ns a vertex.
+// VertexBlocks::vertices and rays.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/vertexblocks.h"

@@ -1,5 +1,6 @@
 #include "integrator/lobeselection.h"
 #include "integrator/accumulator.h"
+#include "integrator/photonflight.h"
 #include "integrator/stageset.h"
 #include <algorithm>
 #include <bit>
@@ -7,7 +8,7 @@
 namespace alpenglow::integrator {
 
 LobeSelection::LobeSelection(const StageSet& s, const VertexStages& v)
-    : VertexStage(s, v), accumulator_(s.accumulator), mediumEvents_(s.mediumEvents), surfaces_(s.surfaces) {}
+    : VertexStage(s, v), accumulator_(s.accumulator), flight_(v.flight), mediumEvents_(s.mediumEvents), surfaces_(s.surfaces) {}
 
 void LobeSelection::prepare() {
     for (size_t k = 0; k < v_.count; ++k) {
@@ -34,7 +35,8 @@ void LobeSelection::select(const BatchContext& c) {
     const SelectRules rules{of.data(), world_.settings_.unbiased || c.aside, !rules_.pickOne};
     for (size_t k = 0; k < v_.count; ++k) {
         const bool still = (!world_.settings_.indirect && v_.sites[k].diffuse) || (c.below && !rules_.pickOne);
-        for (size_t b = 0; b < v_.blocks && still && !v_.sites[k].walks; ++b) v_.sites[k].lobes[b].stays = ~Lanes(0);
+        const bool stays = still && !v_.sites[k].walks && !flight_.on(); // PhotonFlight has limits of its own
+        for (size_t b = 0; b < v_.blocks && stays; ++b) v_.sites[k].lobes[b].stays = ~Lanes(0);
     }
     for (size_t b = 0; b < v_.blocks; ++b) {
         const Selected found = stages_.select(v_.vertices[b], v_.lobesOf(b).data(), int(v_.count), rules);

@@ -28,6 +28,7 @@ private:
     /// Shaders already reported: reflectance over 1; reflectance plus transparency over 1.
     std::set<const void*> tamed_, tamedClear_;
     Accumulator& accumulator_;
+    PhotonFlight& flight_;
     MediumEvents& mediumEvents_;
     SurfacePoints& surfaces_;
 };

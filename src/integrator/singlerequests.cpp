@@ -3,7 +3,6 @@
 #include "integrator/accumulator.h"
 #include "integrator/kernelinputs.h"
 #include "integrator/occlusioncalls.h"
-#include "integrator/photonflight.h"
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
@@ -21,8 +20,8 @@ static bool shareSite(const BlockLobes& s, const LobeVertex& l) {
 }
 
 SingleRequests::SingleRequests(const StageSet& s, const VertexStages& v)
-    : VertexStage(s, v), lanes_(lobeLanes(lobeWidth())), unshadowed_(s), accumulator_(s.accumulator), flight_(v.flight),
-      loading_(v.loading), requests_(s.requests) {}
+    : VertexStage(s, v), lanes_(lobeLanes(lobeWidth())), unshadowed_(s), accumulator_(s.accumulator), loading_(v.loading),
+      requests_(s.requests) {}
 
 void SingleRequests::load(BatchContext& c) {
     loading_.begin(c, !requests_.lobes.empty() && requests_.lobes[0].ownsTarget);
@@ -97,9 +96,6 @@ void SingleRequests::takeRequest(Site& s, const LobeVertex& l) {
     for (int r = 0; r < kLobeRows; ++r) b.lobe[r][i] = requests_.rows.row(l.place, r);
     b.asked |= 1u << i;
     b.elsewhere |= Lanes(l.elsewhere) << i;
-    const bool indirect = world_.settings_.indirect || flight_.on() || // Flight::limitDepths()
-                          l.rays->type != RayType::Diffuse || l.below >= 0;
-    b.stays |= Lanes(l.directOnly || !indirect) << i;
     s.lights |= l.lights;
     const shading::RaySet& set = l.rays->set;
     s.sets |= l.trace && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default);

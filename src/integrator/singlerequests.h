@@ -32,7 +32,6 @@ private:
     LobeLanesList lanes_;
     UnshadowedLight unshadowed_;
     Accumulator& accumulator_;
-    PhotonFlight& flight_;
     VertexLoading& loading_;
     Requests& requests_;
 };

@@ -61,10 +61,9 @@ struct LobeVertex {
     float importance = 1; ///< "weight", for rayinfo()
     Color tint{1};        ///< of the environment map
     const TraceSite* trace = nullptr;
-    shading::Fade fade;      ///< attenuation of distant hits
-    int32_t below = -1;      ///< SubsurfaceWalks::below, for a subsurface() whose rays walk; -1: other lobes
-    bool directOnly = false; ///< lights are sampled, no ray is sent
-    float indirect = 1;      ///< factor of its rays
+    shading::Fade fade; ///< attenuation of distant hits
+    int32_t below = -1; ///< SubsurfaceWalks::below, for a subsurface() whose rays walk; -1: other lobes
+    float indirect = 1; ///< factor of its rays
 };
 
 /// n or -n: on the side of the surface at p from which a ray in direction dir arrives.

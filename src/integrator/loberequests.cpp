@@ -138,7 +138,7 @@ void LobeRequests::noteHemispheres(const Site& s, BatchContext& c) {
 
 /// Counts the calls with a weight in a loop. before: by point, those of earlier turns.
 void LobeRequests::countCalls(Site& s, const EmitRecord& e, const BatchContext& c, std::vector<uint32_t>& before) {
-    s.occurrence.resize(v_.points);
+    s.occurrence.resize(v_.blocks * kBlock);
     const float* weight = c.arena.data() + e.offset;
     for (uint64_t left = e.mask; left; left &= left - 1) {
         const size_t lane = size_t(std::countr_zero(left)), point = size_t(e.first) + lane, lanes = size_t(e.lanes);
@@ -178,7 +178,7 @@ bool LobeRequests::readOptions(Site& s, BatchContext& c) {
     if (!s.info->block->options && rules_.pickOne && std::none_of(s.lobes.begin(), s.lobes.begin() + long(v_.blocks), elsewhere))
         return true;
     const SiteInfo& info = *s.info;
-    s.options.assign(v_.points, {});
+    s.options.assign(v_.blocks * kBlock, {});
     for (size_t b = 0; b < v_.blocks; ++b)
         for (Lanes left = s.lobes[b].asked; left; left &= left - 1) {
             const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;

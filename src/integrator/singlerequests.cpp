@@ -100,7 +100,7 @@ void SingleRequests::takeRequest(Site& s, const LobeVertex& l) {
     const shading::RaySet& set = l.rays->set;
     s.sets |= l.trace && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default);
     if (l.occurrence > 0) {
-        s.occurrence.resize(v_.points);
+        s.occurrence.resize(v_.blocks * kBlock);
         s.occurrence[size_t(l.point)] = l.occurrence;
         v_.repeats = true;
     }
@@ -112,7 +112,7 @@ void SingleRequests::readOptions(Site& s) {
                      l->maxDistance < 1e38f || l->fade.fades());
     });
     if (!some) return;
-    s.options.assign(v_.points, {});
+    s.options.assign(v_.blocks * kBlock, {});
     for (const LobeVertex* l : s.requests)
         if (l)
             s.options[size_t(l->point)] = {l->bias, l->maxDistance, l->importance, l->samples,

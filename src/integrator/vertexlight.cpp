@@ -247,7 +247,7 @@ void VertexLight::beginExits(const BatchContext& c) {
     s.rays = &kDiffuseKind;
     s.lighting = s.lights = s.diffuse = true;
     s.begin(v.blocks);
-    if (v.moved) s.options.assign(v.points, {});
+    if (v.moved) s.options.assign(v.blocks * kBlock, {});
     for (size_t b = 0; b < v.blocks; ++b) {
         LobeBlock& l = s.lobes[b];
         l.asked = v.vertices[b].points;

@@ -158,7 +158,7 @@ void LightSampling::ChosenLights::askOnce(const BoundKernel* group, BatchContext
         if (blocks_[k].lights.asked) connect(blocks_[k], c);
 }
 
-/// Makes points on the lights one by one: BlockVertices::queries_ and asked_.
+/// Makes points on the lights one by one: VertexBlocks::queries and asked.
 void LightSampling::ChosenLights::placeQueries(const BatchContext& c) {
     std::vector<ShadePoint>& queries = v_.queries;
     std::vector<BlockQuery>& asked = v_.asked;

@@ -112,8 +112,8 @@ TEST(SceneParts, Stages) {
     EXPECT_EQ(stageOfSymbol("_ZN9alpenglow7shading9SchedulerINS0_7PathRayEE3addEiRKNS_4Vec3E"), kAccumulate);
     EXPECT_EQ(stageOfSymbol("_ZNK9alpenglow5accel5Accel4Impl14nearestInBlockERKNS0_10DirectRaysEjPKfPNS0_3HitE"), kSearch);
     EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator10RowShading3runERNS0_12BatchContextE"), kSurfaces);
-    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator13BlockVertices6selectERKNS0_12BatchContextE"), kChoose);
-    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator13BlockVertices14placeOnEmitterEmRKNS0_7EmitterE"), kLightSamples);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator13LobeSelection6selectERKNS0_12BatchContextE"), kChoose);
+    EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator13LightSampling14placeOnEmitterEmRKNS0_7EmitterE"), kLightSamples);
     EXPECT_EQ(stageOfSymbol("_ZN9alpenglow6render4Film3addEiRKNS_4Vec3E"), kCamera);
     EXPECT_EQ(stageOfSymbol("_ZN9alpenglow10integrator12Transparency14continueBehindERKNS0_14SurfaceBindingE"), kElsewhere);
     EXPECT_EQ(stageOfSymbol("[kernel code]"), kShade);

@@ -41,8 +41,7 @@ void PhotonGather::mark(BatchContext& c) {
 
 /// Decided by what both a photon and a path know: the roughness, and that the lobe is the same from either of its directions.
 /// This holds for microfacets and for highlights around the mirror direction. A highlight around another direction, as by
-/// refraction, has paths that only one of both finds. Shaders that move P are excluded, as they cannot run twice. `below`:
-/// PhotonStage::narrowBelow().
+/// refraction, has paths that only one of both finds. Shaders that move P are excluded, as they cannot run twice.
 bool PhotonGather::isNarrow(const Site& s, size_t point, float below, BatchContext& c) const {
     const size_t i = point % kBlock;
     const LobeBlock& l = s.lobes[point / kBlock];

@@ -22,7 +22,8 @@ public:
     void take(BatchContext&, Sched&);
     /// Sets the trail of the next rays of a block.
     void keep(size_t block, const BatchContext&);
-    /// Whether photons treat a lobe as a mirror although it is no delta lobe. below: PhotonStage::narrowBelow().
+    /// Whether photons treat a lobe as a mirror although it is no delta lobe. below: lobes with a smaller
+    /// spread, in radians, are.
     bool isNarrow(const Site&, size_t point, float below, BatchContext&) const;
     /// Whether photons continue along a lobe as along a mirror, once LobeBlock::narrow is set.
     bool mirrors(const Site&, size_t point, const BatchContext&) const;

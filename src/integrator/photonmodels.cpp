@@ -152,11 +152,6 @@ const shading::Media* PhotonStage::aboutLight(const EmissionPlan::Light& l, cons
     return media_.kept(mediaAbout(world_, s.origin, world_.shadesAtOpen_ ? 0 : s.drawn.time));
 }
 
-float PhotonStage::narrowBelow(const PathRay& ray) const {
-    if (const PhotonTrace* t = photonTrace()) return t->job->width;
-    return passOf(ray) ? world_.photons_->widthOfPasses : 0;
-}
-
 void PhotonStage::tilt(BatchContext& c) {
     for (size_t i = 0; i < c.points.size(); ++i) {
         ShadePoint& p = c.points[i];

@@ -40,8 +40,6 @@ public:
     bool bringsPhotons(const PathRay& r, int light) const {
         return (r.trail & shading::kTrailMirrored) && passOf(r) && world_.photons_->lightsOfPasses[size_t(light)];
     }
-    /// Lobes with a smaller spread, in radians, count as mirrors for this ray. 0: none do.
-    float narrowBelow(const PathRay&) const;
     /// The volumes at the origin of a photon; null: none.
     const shading::Media* aboutLight(const EmissionPlan::Light&, const struct EmissionStart&);
     void tilt(BatchContext&); ///< tilts photons along the normal by kLeastTilt

@@ -231,7 +231,7 @@ struct SiteInfo {
     };
     std::vector<Output> outputs;
     int32_t label = 0;                          ///< label of its rays, interned, for rayinfo()
-    std::shared_ptr<const LobeArguments> block; ///< a lobe that can be processed in blocks; null: point by point
+    std::shared_ptr<const LobeArguments> block; ///< how its request is read in rows; null: one by one
 };
 
 /// Number of rows of the argument that begins at `row`.
@@ -259,7 +259,7 @@ struct BoundKernel {
     KernelNeeds needs;
     bool mixed = false;
     bool path = false;   ///< lobe shadeops are requests; else they are evaluated at once
-    bool blocks = false; ///< all its requests are lobes with SiteInfo::block
+    bool blocks = false; ///< all its requests can be read in rows (SiteInfo::block)
     explicit operator bool() const { return kernel != nullptr; }
 };
 /// File position of a call.

@@ -1,5 +1,5 @@
-// Calls of shaders in blocks (integrator/blockvertices.h): depths of surfaces, loops, subsurface(), parameters of trace(), wide
-// lights, all lobes.
+// Calls of shaders whose requests are read in rows (integrator/loberequests.h): depths of surfaces, loops, subsurface(),
+// parameters of trace(), wide lights, all lobes.
 #include "integrator/blockrooms.h"
 
 namespace blockcalls_test {

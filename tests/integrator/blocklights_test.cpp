@@ -1,4 +1,5 @@
-// Lights of every kind, sampled for vertices in blocks (integrator/blockvertices.h): the bits are those of single points.
+// Lights of every kind, sampled by vertices in blocks (integrator/vertexlight.h): the bits do not depend on how requests are
+// read, nor on the lanes of kernels. LightTable, Lamps and others compare the light itself with closed forms.
 #include "integrator/blockrooms.h"
 #include "world/impl.h"
 
@@ -16,7 +17,8 @@ Settings under(Hider h) {
     return s;
 }
 
-/// Traces a room in blocks, at both ends of the widths, and point by point. least: part of the points that blocks must take.
+/// Traces a room with requests in rows, at both ends of the widths, and one by one. least: part of the points that must go in
+/// rows.
 void expectSameBits(const std::string& rib, const Settings& s, double least, const std::string& what, int depth = -1) {
     const Traced one = trace(rib, false, 16, depth, s), all = trace(rib, true, 16, depth, s);
     EXPECT_GT(sumOf(one), 1) << what;

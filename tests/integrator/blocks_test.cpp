@@ -1,4 +1,4 @@
-// Vertices that are followed 16 at a time (integrator/blockvertices.h) have the bits of those that go one by one.
+// Requests that are read in rows (integrator/loberequests.h) have the bits of those that are read one by one.
 #include "display/imageio.h"
 #include "integrator/blockrooms.h"
 #include "scene/lightpaths.h"

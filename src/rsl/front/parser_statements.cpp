@@ -116,7 +116,7 @@ void Parser::refuseTypeName() {
          near.empty() ? (w == "int" || w == "bool" ? "use float" : "") : "did you mean '" + near + "'?");
 }
 
-/// A statement that begins with a word of its own; null where it does not.
+/// Parses a statement that begins with a keyword. Returns null, and consumes nothing, if the next token is none.
 StmtPtr Parser::keywordStatement() {
     const std::string_view w = peek().text;
     if (w == "if") return conditional(StmtKind::If);

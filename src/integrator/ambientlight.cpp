@@ -38,7 +38,7 @@ void AmbientLight::draw(const BatchContext& c, std::vector<AmbientAsked>& calls)
         const ShadePoint& p = c.points[size_t(a.point)];
         const Vec3 n = directionOr(a.way, p.surface.n);
         a.way = Basis(onSeenSide(n, p, c.rays[size_t(a.point)].dir)).toWorld(sampleCosine(numbers_.pair(i)));
-        if (a.lit >= 0) litSurfaces_.tellOutputs(litSurfaces_.values[size_t(a.lit)], c, size_t(a.point));
+        if (a.lit >= 0) litSurfaces_.recordOutputs(litSurfaces_.values[size_t(a.lit)], c, size_t(a.point));
     }
 }
 
@@ -99,7 +99,7 @@ void AmbientLight::gather(BatchContext& c) {
         }
         value.assign(queries.size(), {});
         LitSurface lit;
-        if (l.asksSurface) lit = litSurfaces_.litBy(litBy_);
+        if (l.asksSurface) lit = litSurfaces_.querying(litBy_);
         lightKernels_.evaluateLight(l, queries, value, {.lit = l.asksSurface ? &lit : nullptr});
         for (size_t k = 0; k < of.size(); ++k) {
             const AmbientAsked& a = calls[of[k]];

@@ -31,9 +31,9 @@ struct BlockLobes {
     bool sets = false;     ///< rays of a trace() that hit other surfaces, or other sides, than rays of lighting shadeops
     uint32_t nth = 0;      ///< how many calls of a strip at this call site came before, in a loop
     std::vector<LobeBlock> lobes;
-    std::vector<LightDirected> beside; ///< by point: light-directed sampling (lightdirected.h); empty: none
-    std::vector<float> narrow;         ///< arguments, by block, for kernels whose strips are narrower than a block
-    std::vector<const float*> rows;    ///< by block: arguments of its first point, `stride` floats apart
+    std::vector<LightDirected> lightDirected; ///< by point: light-directed sampling (lightdirected.h); empty: none
+    std::vector<float> narrow;                ///< arguments, by block, for kernels whose strips are narrower than a block
+    std::vector<const float*> rows;           ///< by block: arguments of its first point, `stride` floats apart
     int stride = 0;
     std::vector<RayOptions> options; ///< by point; empty: none
     /// By point: the request, if it was made point by point (Requests::lobes); null: none. Empty: `rows` hold the arguments.

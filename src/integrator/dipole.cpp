@@ -61,10 +61,10 @@ void Walks::probe(int asked) {
         const Vec3 n = s.displaced ? s.displacedN : s.n, to = (s.displaced ? s.displacedP : s.P) - from;
         double density = 0; // of all axes and channels that could have sampled this point
         for (int j = 0; j < 3; ++j) {
-            const Vec3 beside = to - axes[j] * dot(to, axes[j]);
+            const Vec3 across = to - axes[j] * dot(to, axes[j]);
             double d = 0;
             for (int i = 0; i < 3; ++i)
-                if (share[i] > 0) d += share[i] * dipoles[size_t(i)].density(length(beside));
+                if (share[i] > 0) d += share[i] * dipoles[size_t(i)].density(length(across));
             density += chances[j] * d * std::fabs(dot(n, axes[j]));
         }
         if (!(density > 0)) continue;

@@ -68,7 +68,7 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
         }
         value.assign(q.size(), {});
         LitSurface lit;
-        if (l.asksSurface) lit = litSurfaces_.litBy(litBy_);
+        if (l.asksSurface) lit = litSurfaces_.querying(litBy_);
         lightKernels_.evaluateLight(l, q, value, {.lit = l.asksSurface ? &lit : nullptr});
         for (size_t i = 0; i < of.size(); ++i)
             if (value[i].lit) {
@@ -115,7 +115,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
         const BoundLight& light = world_.lights_[size_t(met[first].light)];
         value.assign(q.size(), {});
         LitSurface lit;
-        if (light.asksSurface) lit = litSurfaces_.litBy(litBy_);
+        if (light.asksSurface) lit = litSurfaces_.querying(litBy_);
         std::vector<char> inMedium;
         if (!world_.media_.empty())
             for (size_t i = first; i < end; ++i) inMedium.push_back(met[i].point->ray->medium() >= 0);
@@ -162,7 +162,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
 }
 
 /// Adds the light of the emitters among the points.
-void EmittedLight::shine(const BatchContext& c, Sched& sched) {
+void EmittedLight::hits(const BatchContext& c, Sched& sched) {
     std::vector<Met> met;
     for (size_t i = 0; i < c.points.size(); ++i) {
         const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];

@@ -20,7 +20,7 @@ class EmittedLight final : Stage {
 public:
     explicit EmittedLight(const StageSet&);
     /// Adds light of the emitters among the points of a batch.
-    void shine(const BatchContext&, Sched&);
+    void hits(const BatchContext&, Sched&);
     /// Adds light of skies to rays that left the scene.
     void misses(std::span<const Sched::Task* const>, Sched&);
 

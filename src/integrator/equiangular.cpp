@@ -20,8 +20,8 @@ bool Equiangular::look(const FreeFlight& f, const BoundLight& l, MediumSampling 
     const Vec3d to = Vec3d(l.place) - Vec3d(f.origin), dir(f.dir);
     length_ = f.length;
     nearest_ = dot(to, dir);
-    const Vec3d beside = to - dir * nearest_;
-    away_ = std::max({std::sqrt(dot(beside, beside)), 1e-5 * double(f.length), 0.5 * double(l.extent)});
+    const Vec3d across = to - dir * nearest_;
+    away_ = std::max({std::sqrt(dot(across, across)), 1e-5 * double(f.length), 0.5 * double(l.extent)});
     const double sigma = (double(f.extinction.x) + f.extinction.y + f.extinction.z) / 3;
     const double reach = sigma * f.length > 4 ? 4 / sigma : double(f.length); // beyond it little light is left
     if (!(away_ > 0) || (how == MediumSampling::Both && !(away_ < 2 * reach))) return false;

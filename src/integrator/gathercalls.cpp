@@ -367,8 +367,8 @@ static void tellSent(const GatherSent& ray, const GatherSite::Output& asked, con
 
 void GatherCalls::tellGather(const BatchContext& c, int point, GatherSent& sent) {
     const ShadePoint& p = c.points[size_t(point)];
-    if (sent.told || p.shape != sent.met) return;
-    sent.told = true;
+    if (sent.shaded || p.shape != sent.met) return;
+    sent.shaded = true;
     const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[size_t(point)])];
     for (const Output& o : sent.site->outputs) {
         if (o.of != Of::Surface && o.of != Of::Displacement && o.of != Of::Volume) continue;

@@ -16,8 +16,8 @@ struct GatherSent {
     float* row = nullptr; ///< in GatherRows
     const geometry::Shape* met = nullptr;
     const GatherSite* site = nullptr;
-    bool quiet = false; ///< light and opacity are in the row already
-    bool told = false;  ///< the shaders at the hit have run
+    bool quiet = false;  ///< light and opacity are in the row already
+    bool shaded = false; ///< the shaders at the hit have run
     /// Values of GatherSite::sent, one behind the other.
     std::vector<float> values;
     /// By entry of GatherSite::sent, where its values end.

@@ -24,7 +24,7 @@ void LastSkies::send(const BatchContext& c, std::span<const LastRay> rays, int n
     const BoundLight& light = world_.lights_[size_t(number)];
     std::vector<ShadePoint> q;
     std::vector<const LastRay*> of;
-    std::vector<int> told;
+    std::vector<int> surfaces;
     for (const LastRay& r : rays) {
         if (!light.seenBy(*r.kind)) continue;
         if (!world_.bindings_[size_t(c.bindings[size_t(r.point)])].lights.contains(number)) continue;
@@ -37,11 +37,11 @@ void LastSkies::send(const BatchContext& c, std::span<const LastRay> rays, int n
         p.time = at.time;
         p.ray = &c.rays[size_t(r.point)];
         of.push_back(&r);
-        told.push_back(r.lit);
+        surfaces.push_back(r.lit);
     }
     std::vector<LightValue> value(q.size());
     LitSurface lit;
-    if (light.asksSurface) lit = litSurfaces_.litBy(told);
+    if (light.asksSurface) lit = litSurfaces_.querying(surfaces);
     lightKernels_.evaluateLight(light, q, value, {.lit = light.asksSurface ? &lit : nullptr});
     for (size_t k = 0; k < of.size(); ++k) {
         const LastRay& r = *of[k];

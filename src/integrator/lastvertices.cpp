@@ -52,7 +52,7 @@ void LastVertices::endLobe(const Site& s, size_t b, const BatchContext& c) {
         LastRay& ray = ends_.emplace_back(int(point), &s.raysAt(point), v_.originOf(s, point, w), w, weight, c.targets[point]);
         ray.maxDistance = s.options.empty() ? 1e38f : s.options[point].maxDistance;
         ray.share = v_.shareOf(s, point, c.rays[point]);
-        ray.lit = v_.toldAt(point);
+        ray.lit = v_.litSurfaceAt(point);
         ray.path = v_.pathOf(s, false, point, w, c);
     }
 }

@@ -7,7 +7,7 @@ namespace alpenglow::integrator {
 
 /// Selects lights for light-directed sampling, and the lobes that use it.
 void LobeSelection::lightDirections(const BatchContext& c) {
-    for (size_t k = 0; k < v_.count; ++k) v_.sites[k].beside.clear();
+    for (size_t k = 0; k < v_.count; ++k) v_.sites[k].lightDirected.clear();
     if (v_.waits || c.between || !mediumEvents_.surfacesAim()) return; // rays of waiting kernels follow the lobe's density alone
     for (size_t b = 0; b < v_.blocks; ++b) {
         Lanes some = 0;
@@ -15,17 +15,17 @@ void LobeSelection::lightDirections(const BatchContext& c) {
         for (some &= v_.vertices[b].points; some; some &= some - 1) {
             const int lane = std::countr_zero(some);
             const size_t point = b * kBlock + size_t(lane);
-            const LightDirected beside = mediumEvents_.atSurfaceInMedium(c, point);
-            if (!(beside.share > 0)) continue;
+            const LightDirected lightDirected = mediumEvents_.atSurfaceInMedium(c, point);
+            if (!(lightDirected.share > 0)) continue;
             for (size_t k = 0; k < v_.count; ++k) {
                 if (!(v_.sites[k].spreads(b) >> lane & 1)) continue;
-                v_.sites[k].beside.resize(v_.blocks * kBlock);
-                v_.sites[k].beside[point] = beside;
+                v_.sites[k].lightDirected.resize(v_.blocks * kBlock);
+                v_.sites[k].lightDirected[point] = lightDirected;
             }
         }
     }
     for (size_t k = 0; k < v_.count; ++k)
-        for (size_t b = 0; b < v_.blocks && !v_.sites[k].beside.empty(); ++b) v_.sites[k].weighLightDirected(b, v_.value);
+        for (size_t b = 0; b < v_.blocks && !v_.sites[k].lightDirected.empty(); ++b) v_.sites[k].weighLightDirected(b, v_.value);
 }
 
 Lanes BlockLobes::spreads(size_t b) const {
@@ -36,7 +36,7 @@ Lanes BlockLobes::spreads(size_t b) const {
 }
 
 void BlockLobes::weighLightDirected(size_t b, Row* value) {
-    LightDirected* const of = &beside[b * kBlock];
+    LightDirected* const of = &lightDirected[b * kBlock];
     Lanes asked = 0;
     alignas(64) Row w[3];
     for (int i = 0; i < kBlock; ++i) {
@@ -52,19 +52,19 @@ void BlockLobes::weighLightDirected(size_t b, Row* value) {
 }
 
 void BlockLobes::addLightDirected(Lanes some, const Row* w, const size_t* pointOf, float* pdf) const {
-    for (some = beside.empty() ? 0 : some; some; some &= some - 1) {
+    for (some = lightDirected.empty() ? 0 : some; some; some &= some - 1) {
         const int i = std::countr_zero(some);
-        pdf[i] = beside[pointOf[i]].density({w[0][i], w[1][i], w[2][i]}, pdf[i]);
+        pdf[i] = lightDirected[pointOf[i]].density({w[0][i], w[1][i], w[2][i]}, pdf[i]);
     }
 }
 
 void BlockLobes::draw(size_t b, Lanes some, render::NumberBlock& u, Row* drawn) const {
     Vec3 directions[kBlock];
     Lanes aside = 0;
-    for (Lanes left = beside.empty() ? 0 : some; left; left &= left - 1) {
+    for (Lanes left = lightDirected.empty() ? 0 : some; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         Vec2 pair{u.x[i], u.y[i]};
-        const std::optional<Vec3> w = beside[b * kBlock + size_t(i)].draw(pair);
+        const std::optional<Vec3> w = lightDirected[b * kBlock + size_t(i)].draw(pair);
         u.x[i] = pair.x;
         if (!w) continue;
         directions[i] = *w;

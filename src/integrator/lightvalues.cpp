@@ -12,27 +12,27 @@ namespace alpenglow::integrator {
 
 /// A vertex gives one answer to lights that query its surface: that of its first lobe.
 void LightSampling::tellLights(const BatchContext& c) {
-    v_.told.assign(v_.points, -1);
+    v_.litSurface.assign(v_.points, -1);
     std::vector<LitValues>& all = litSurfaces_.values;
     for (size_t k = 0; k < v_.count; ++k) {
         const Site& s = v_.sites[k];
         for (size_t b = 0; b < v_.blocks; ++b)
             for (Lanes left = s.lobes[b].asked & v_.vertices[b].points; left; left &= left - 1) {
                 const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
-                if (v_.told[point] >= 0) continue;
+                if (v_.litSurface[point] >= 0) continue;
                 if (const LobeVertex* const r = s.requestAt(point)) {
-                    v_.told[point] = r->lit;
-                    if (s.info) litSurfaces_.tellOutputs(all[size_t(r->lit)], c, point);
+                    v_.litSurface[point] = r->lit;
+                    if (s.info) litSurfaces_.recordOutputs(all[size_t(r->lit)], c, point);
                     continue;
                 }
-                v_.told[point] = int(all.size());
+                v_.litSurface[point] = int(all.size());
                 if (!s.info) { // no call: points in a medium, and exits of walks
                     all.emplace_back().binding = c.below ? c.bindings[point] : -1;
                     continue;
                 }
                 const auto row = [&](int r) { return s.rows[b][size_t(r) * size_t(s.stride) + i]; };
                 all.push_back(litValuesOf(c, *s.info, int(point), row));
-                litSurfaces_.tellOutputs(all.back(), c, point);
+                litSurfaces_.recordOutputs(all.back(), c, point);
             }
     }
 }
@@ -49,10 +49,10 @@ void LightSampling::askQueries(const BoundLight& light, const BoundKernel* group
         return lightKernels_.evaluateLight(light, v_.queries, v_.values, call);
     }
     LitSurface lit;
-    std::vector<int> told;
+    std::vector<int> surfaces;
     if (light.asksSurface) {
-        for (const BlockQuery& a : v_.asked) told.push_back(v_.toldAt(size_t(a.point)));
-        lit = litSurfaces_.litBy(told);
+        for (const BlockQuery& a : v_.asked) surfaces.push_back(v_.litSurfaceAt(size_t(a.point)));
+        lit = litSurfaces_.querying(surfaces);
         call.lit = &lit;
     }
     std::vector<char> inMedium;

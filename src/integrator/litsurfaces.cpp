@@ -15,7 +15,7 @@ bool LitValues::output(const std::string& name, std::vector<float>& v) const {
     return false;
 }
 
-LitSurface LitSurfaces::litBy(std::span<const int> of) const {
+LitSurface LitSurfaces::querying(std::span<const int> of) const {
     LitSurface lit;
     lit.binding = [this, of](int q) -> const SurfaceBinding* {
         const int b = of[size_t(q)] < 0 ? -1 : values[size_t(of[size_t(q)])].binding;
@@ -32,9 +32,9 @@ LitSurface LitSurfaces::litBy(std::span<const int> of) const {
     return lit;
 }
 
-void LitSurfaces::tellOutputs(LitValues& told, const BatchContext& c, size_t point) const {
+void LitSurfaces::recordOutputs(LitValues& of, const BatchContext& c, size_t point) const {
     if (c.bound->kernel->facts().suspends) return;
-    for (auto& [output, v] : told.outputs) {
+    for (auto& [output, v] : of.outputs) {
         const int o = c.batch->output(output->name);
         for (size_t r = 0; o >= 0 && r < v.size(); ++r) v[r] = c.batch->value(o, int(r), int(point));
     }

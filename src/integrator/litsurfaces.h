@@ -10,24 +10,24 @@ struct StageSet;
 
 /// Values of a point that lights may query, from a call there. f(row): a number of the call's arguments.
 template <class Row> LitValues litValuesOf(const BatchContext& c, const SiteInfo& s, int point, const Row& f) {
-    LitValues told;
-    told.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray has none
-    told.displaced = c.displaced;
-    told.point = point;
+    LitValues values;
+    values.binding = size_t(point) < c.bindings.size() ? c.bindings[size_t(point)] : -1; // a light's own ray has none
+    values.displaced = c.displaced;
+    values.point = point;
     for (const SiteInfo::Output& o : s.outputs) {
-        auto& of = told.outputs.emplace_back(&o, std::vector<float>());
+        auto& of = values.outputs.emplace_back(&o, std::vector<float>());
         for (int r = 0; r < o.size; ++r) of.second.push_back(f(o.row + r));
     }
-    return told;
+    return values;
 }
 
 class LitSurfaces final : Stage {
 public:
     explicit LitSurfaces(const StageSet&);
     /// For the queries of a light; `of`, by query: index in `values`. This object must outlive the result.
-    LitSurface litBy(std::span<const int> of) const;
+    LitSurface querying(std::span<const int> of) const;
     /// Records current output values of a surface for lights that query them; for a waiting kernel, the values at the call.
-    void tellOutputs(LitValues&, const BatchContext&, size_t point) const;
+    void recordOutputs(LitValues&, const BatchContext&, size_t point) const;
 
     std::vector<LitValues> values; ///< for the current batch; filled only if lights query surfaces
 };

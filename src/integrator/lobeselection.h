@@ -1,6 +1,6 @@
 // Albedo of each lobe, the energy rule, and the probability of following its ray (docs/design/light-transport.md); light-directed
 // sampling in media. Reads VertexBlocks::sites and vertices; writes LobeBlock::chosen, lights, ended, failed,
-// VertexBlock::energyScale and passes, BlockLobes::beside.
+// VertexBlock::energyScale and passes, BlockLobes::lightDirected.
 #pragma once
 #include "integrator/batchcontext.h"
 #include "integrator/vertexblocks.h"

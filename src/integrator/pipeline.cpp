@@ -309,7 +309,7 @@ void Pipeline::shadeHits(size_t group, Sched& sched) {
     p.surfaces.placePoints(*c);
     p.segmentEvents.run(*c, sched);
     if (c->rays.empty()) return p.batches.giveBack(std::move(c));
-    p.emitted.shine(*c, sched);
+    p.emitted.hits(*c, sched);
     p.store.keepIndirect(*c);
     if (w.globalMaps_) p.photons.takeGlobalMaps(*c, sched);
     if (c->rays.empty()) return p.batches.giveBack(std::move(c));

@@ -308,7 +308,7 @@ void ScatterRays::keepLobes(size_t b, BatchContext& c) {
                                    ? 1
                                    : (v_.next.indirect[i] == 0 ? 1 : v.energyScale[i]) * v_.indirectOf(s, point);
         const bool fades = !s.options.empty() && s.options[point].fade.fades();
-        const int lit = v_.toldAt(point);
+        const int lit = v_.litSurfaceAt(point);
         if (indirect == 1 && share < 0 && !c.between && !fades && lit < 0 && !request) continue;
         RayExtra extra;
         extra.lit = lit;

@@ -141,7 +141,7 @@ void SingleRequests::examine(size_t b, BatchContext& c) {
         ray.maxDistance = l->maxDistance;
         ray.bringsEmission = l->lights && (l->elsewhere || (v_.next.single >> i & 1));
         ray.lit = l->elsewhere ? l->from : c.points[point].P;
-        ray.told = v_.toldAt(point);
+        ray.litSurface = v_.litSurfaceAt(point);
         const float spread = c.rays[point].footprint.spread;
         const Color environment = l->trace->map ? l->tint * requests_.mapTowards(*l->trace, w, spread) : Color(0);
         unshadowed_.add(c, ray, throughputOf(i), environment, *sums);

@@ -78,8 +78,8 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
     }
     Entry at{b.normal == Vec3() ? side : b.normal, b.from, {}};
     if (turned && dot(at.out, side) < 0) at.out = -at.out; // seen from behind
-    const float beside = 8 * geometry::roundingError(b.from);
-    accel::Ray ray = rayOf({asked, b.from + at.out * beside, -at.out, {}, {}, 0}, 1e38);
+    const float offset = 8 * geometry::roundingError(b.from);
+    accel::Ray ray = rayOf({asked, b.from + at.out * offset, -at.out, {}, {}, 0}, 1e38);
     accel::Hit hit;
     bool met = intersector_.intersect(ray, hit);
     for (int k = 0; met && !belongs(hit.shape, b.group); ++k) {
@@ -90,8 +90,8 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
     const geometry::SurfacePoint s = world_.accel_->point(hit);
     const Vec3 n = s.displaced ? s.displacedN : s.n;
     const bool leaves = dot(ray.dir, turned ? -n : n) > 0;
-    if (leaves && !(hit.distance < 4 * double(beside))) {
-        at.at -= at.out * beside;
+    if (leaves && !(hit.distance < 4 * double(offset))) {
+        at.at -= at.out * offset;
         return at;
     }
     if (leaves) at.out = -at.out; // on the surface, with a normal that points inward

@@ -114,9 +114,9 @@ bool SurfaceShading::vanish(BatchContext& c, Sched& sched) {
         return false;
     const bool outputs = world_.settings_.firstSeen || !world_.wanted_.empty();
     for (const PathRay& r : c.rays) {
-        const bool told = (r.first && !(r.counts && sched.plain())) || (r.counts && (outputs || r.sample->grid));
+        const bool reported = (r.first && !(r.counts && sched.plain())) || (r.counts && (outputs || r.sample->grid));
         const bool hazy = r.medium() >= 0 && !world_.media_[size_t(r.medium())].homogeneous;
-        if (told || hazy || store_.extraOf(r).fade.fades()) return false;
+        if (reported || hazy || store_.extraOf(r).fade.fades()) return false;
     }
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& r = c.rays[i];

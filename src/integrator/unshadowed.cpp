@@ -47,9 +47,9 @@ void UnshadowedLight::add(const BatchContext& c, const UnshadowedRay& r, const C
         q[0].shutter = p.shutter;
         q[0].time = p.time;
         q[0].ray = &from;
-        const std::vector<int> told{r.told};
+        const std::vector<int> surfaces{r.litSurface};
         LitSurface surface;
-        if (b.asksSurface) surface = litSurfaces_.litBy(told);
+        if (b.asksSurface) surface = litSurfaces_.querying(surfaces);
         LightValue v;
         lightKernels_.evaluateLight(b, q, {&v, 1}, {.lit = b.asksSurface ? &surface : nullptr});
         if (v.lit && isFinite(v.Cl)) sums.add(TraceSums::UnshadowedAreaLight, through * v.Cl);

@@ -19,7 +19,7 @@ struct UnshadowedRay {
     float maxDistance = 1e38f;
     bool bringsEmission = false; ///< its call samples lights, but not for this ray: a delta lobe, or a ray from elsewhere
     Vec3 lit;                    ///< the point that the lights see
-    int told = -1;               ///< index in LitSurfaces::values
+    int litSurface = -1;         ///< index in LitSurfaces::values
 };
 
 class UnshadowedLight final : Stage {

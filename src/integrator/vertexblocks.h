@@ -46,7 +46,7 @@ struct VertexBlocks final : Stage {
     /// PathRay::path of light that a lobe scatters toward w.
     uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
     /// Index of a point in LitSurfaces::values; -1: none.
-    int toldAt(size_t point) const { return told.empty() ? -1 : told[point]; }
+    int litSurfaceAt(size_t point) const { return litSurface.empty() ? -1 : litSurface[point]; }
     uint32_t numberOf(const BoundLight& l) const { return uint32_t(&l - world_.lights_.data()); }
 
     // By VertexLoading and the stages that read requests.
@@ -65,12 +65,12 @@ struct VertexBlocks final : Stage {
     bool sendsSeveral = false;                  ///< the kernel waits for several rays of a call
     uint64_t ignored = 0;                       ///< rays that are not sent because their "weight" is 0
     // By LightSampling, for one light.
-    std::vector<Lanes> lit;  ///< by block: points that sample it
-    int onlySite = -1;       ///< the only site that samples it; -1: all
-    uint32_t draw = 0;       ///< which sample, if lobes take several
-    bool several = false;    ///< some lobe takes several samples of each light
-    bool checksHits = false; ///< lobes differ in the samples that their rays could hit
-    std::vector<int> told;   ///< toldAt(); empty: no light queries surfaces
+    std::vector<Lanes> lit;      ///< by block: points that sample it
+    int onlySite = -1;           ///< the only site that samples it; -1: all
+    uint32_t draw = 0;           ///< which sample, if lobes take several
+    bool several = false;        ///< some lobe takes several samples of each light
+    bool checksHits = false;     ///< lobes differ in the samples that their rays could hit
+    std::vector<int> litSurface; ///< litSurfaceAt(); empty: no light queries surfaces
     std::vector<LightBlock> lights;
     std::vector<ShadePoint> queries;
     std::vector<BlockQuery> asked;  ///< by query

@@ -136,10 +136,10 @@ void VertexLight::runModels(BatchContext& c, Sched& sched) {
     followLobes(c, sched);
 }
 
-void VertexLight::runMedium(BatchContext& c, const Homogeneous& h, std::span<const Vec3> beside, Sched& sched) {
+void VertexLight::runMedium(BatchContext& c, const Homogeneous& h, std::span<const Vec3> lightDirected, Sched& sched) {
     parts_->loading.begin(c, false);
     parts_->loading.loadVertices(c);
-    beginMedium(beside, h.anisotropy);
+    beginMedium(lightDirected, h.anisotropy);
     followLobes(c, sched);
 }
 
@@ -202,10 +202,10 @@ bool VertexLight::lightMedium(const BatchContext& c, const Homogeneous& h, const
 }
 
 /// Sets the lobes; near a light, those with light-directed sampling.
-void VertexLight::beginMedium(std::span<const Vec3> beside, float anisotropy) {
+void VertexLight::beginMedium(std::span<const Vec3> lightDirected, float anisotropy) {
     VertexBlocks& v = parts_->blocks;
-    static const LobeKind* const kKinds[] = {findLobe("henyey-greenstein"), findLobe("henyey-greenstein-beside")};
-    v.count = std::any_of(beside.begin(), beside.end(), [](const Vec3& l) { return l != Vec3(0); }) ? 2 : 1;
+    static const LobeKind* const kKinds[] = {findLobe("henyey-greenstein"), findLobe("henyey-greenstein-toward-light")};
+    v.count = std::any_of(lightDirected.begin(), lightDirected.end(), [](const Vec3& l) { return l != Vec3(0); }) ? 2 : 1;
     v.sites.resize(std::max(v.sites.size(), v.count));
     for (size_t k = 0; k < v.count; ++k) {
         BlockLobes& s = v.sites[k];
@@ -226,10 +226,10 @@ void VertexLight::beginMedium(std::span<const Vec3> beside, float anisotropy) {
         }
     }
     for (size_t i = 0; i < v.points; ++i) {
-        const bool near = !beside.empty() && beside[i] != Vec3(0);
+        const bool near = !lightDirected.empty() && lightDirected[i] != Vec3(0);
         LobeBlock& l = v.sites[near].lobes[i / kBlock];
         l.asked |= 1u << i % kBlock;
-        for (int q = 0; q < 3 && near; ++q) l.lobe[kRowWo + q][i % kBlock] = beside[i][q];
+        for (int q = 0; q < 3 && near; ++q) l.lobe[kRowWo + q][i % kBlock] = lightDirected[i][q];
     }
 }
 

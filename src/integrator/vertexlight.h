@@ -48,9 +48,9 @@ public:
     /// The same for requests that were made one by one (Requests::lobes, AmbientLight::asked), all of points of this batch;
     /// removes them.
     void gather(BatchContext&, Sched&);
-    /// The same for points inside a medium, with its phase function as lobe. beside: by point, MediumEvents::lightDirection().
-    /// needsPoints(): whether the batch needs its points.
-    void runMedium(BatchContext&, const Homogeneous&, std::span<const Vec3> beside, Sched&);
+    /// The same for points inside a medium, with its phase function as lobe. lightDirected: by point,
+    /// MediumEvents::lightDirection(). needsPoints(): whether the batch needs its points.
+    void runMedium(BatchContext&, const Homogeneous&, std::span<const Vec3> lightDirected, Sched&);
     bool needsPoints(const SurfaceBinding&) const;
     /// Samples one light for such points and evaluates their lobes toward it, to `found`. False: not possible, no effect.
     bool lightMedium(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
@@ -69,7 +69,7 @@ private:
     bool readRows(BatchContext&, bool waits);
     bool follow(BatchContext&, Sched&, bool waits);
     void followLobes(BatchContext&, Sched&);
-    void beginMedium(std::span<const Vec3> beside, float anisotropy);
+    void beginMedium(std::span<const Vec3> lightDirected, float anisotropy);
     void beginExits(const BatchContext&);
     std::unique_ptr<Parts> parts_;
     const StageSet& set_;

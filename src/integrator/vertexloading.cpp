@@ -18,7 +18,7 @@ void VertexLoading::begin(const BatchContext& c, bool waits) {
     v_.repeats = v_.sendsSeveral = v_.several = v_.checksHits = false;
     v_.moved = nullptr;
     v_.single = false;
-    v_.told.clear();
+    v_.litSurface.clear();
     v_.onlySite = -1;
     v_.draw = 0;
     v_.ignored = 0;

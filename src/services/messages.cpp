@@ -130,13 +130,13 @@ const LightParameter& lightParameter(Services& answers, int32_t id, int light) {
     LightParameter* made = &known->second;
     const BoundLight& l = answers.world().lights_[size_t(light)];
     const std::string& name = rsl::internedString(id);
-    made->told = shaderParameter(*l.instance, name);
+    made->value = shaderParameter(*l.instance, name);
     int offset = 0;
     for (const BoundLight::Value& v : l.values) {
-        const bool written = made->told && v.name.what == rsl::OutputName::What::Value && v.name.name == name;
-        const bool element = written && made->told->elements > 0 && v.name.element >= 0;
+        const bool written = made->value && v.name.what == rsl::OutputName::What::Value && v.name.name == name;
+        const bool element = written && made->value->elements > 0 && v.name.element >= 0;
         if (written && (v.name.element < 0 || element)) {
-            const size_t size = made->told->numbers.size() / size_t(std::max(1, made->told->elements));
+            const size_t size = made->value->numbers.size() / size_t(std::max(1, made->value->elements));
             made->written.push_back({offset, v.components, element ? size * size_t(v.name.element) : 0});
         }
         offset += v.components;
@@ -178,14 +178,14 @@ void answerLightSource(Services& answers, const ServiceCall& q) {
     const int width = answers.world().lights_[size_t(loop.light)].valueWidth;
     const SiteInfo* setup = loop.setup >= 0 ? &q.c.bound->sites[size_t(loop.setup)] : nullptr;
     const LightParameter* same = q.s.nameId ? &lightParameter(answers, q.s.nameId, loop.light) : nullptr;
-    if (same && !same->told) return;
+    if (same && !same->value) return;
     q.each([&](int lane, const ShadePoint&) {
         // In this order: written by the light's shader; sent to it; set by the scene.
         const int32_t name = q.nameId(lane);
         const LightParameter& p = same ? *same : lightParameter(answers, name, loop.light);
-        if (!p.told) return;
-        if (p.written.empty() && !setup) return q.answer(lane, *p.told);
-        ShaderValue t = *p.told;
+        if (!p.value) return;
+        if (p.written.empty() && !setup) return q.answer(lane, *p.value);
+        ShaderValue t = *p.value;
         for (const LightParameter::Part& part : p.written)
             for (int r = 0; r < part.components && part.to + size_t(r) < t.numbers.size(); ++r)
                 t.numbers[part.to + size_t(r)] = loop.values[size_t(lane * width + part.from + r)];

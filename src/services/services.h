@@ -29,7 +29,7 @@ public:
 
 /// A lightsource() query to a light.
 struct LightParameter {
-    std::optional<ShaderValue> told; ///< value set by the scene; nothing: the light has no such parameter
+    std::optional<ShaderValue> value; ///< value set by the scene; nothing: the light has no such parameter
     struct Part {
         int from, components;
         size_t to;

@@ -153,13 +153,13 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
             s.firstNumber = numbers_;
             numbers_ += size_t(s.components) * s.elements;
         } else if (s.name.kind == rsl::InputName::Kind::Displacement) {
-            s.from = From::Told;
+            s.from = From::Displacement;
             using rsl::OutputName;
             const auto hear = [&](int element, int part, OutputName::What what) {
-                s.heard.push_back({s.name.member ? OutputName::left(s.name.name, s.name.length, what)
-                                                 : OutputName::parameterOf(s.name.name, -1, what),
-                                   std::max(element, 0), part});
-                s.heard.back().output.element = element;
+                s.outputs.push_back({s.name.member ? OutputName::left(s.name.name, s.name.length, what)
+                                                   : OutputName::parameterOf(s.name.name, -1, what),
+                                     std::max(element, 0), part});
+                s.outputs.back().output.element = element;
             };
             hear(-1, 0, OutputName::What::Value);
             for (int e = 0; e < s.elements; ++e) hear(e, 0, OutputName::What::Value);
@@ -179,7 +179,7 @@ BatchPlan::BatchPlan(const rsl::CompiledKernel& kernel, bool mixed) {
             return geometryOffset(offset) >= 0 || inOwnRows(offset) || isNoMember(offset);
         };
         if (s.from == From::Variable) surfaceRows_ &= std::all_of(s.offset, s.offset + s.parts, inSurfaceRows) && !s.scalar;
-        else surfaceRows_ &= s.from != From::Told && s.from != From::Nothing;
+        else surfaceRows_ &= s.from != From::Displacement && s.from != From::Nothing;
         normal_ |= s.from == From::Variable && s.offset[0] == offsetof(ShadePoint, N);
         if (s.from == From::Parameter) lightRows_ &= !s.varying || s.name.name != kFaceIndex;
         else lightRows_ &= s.from == From::Variable && !s.scalar && inLightRows(s.offset[0]) && s.parts == 1;
@@ -317,9 +317,9 @@ void Batch::pad(const BatchPlan::Source& s, float* row) {
 void Batch::tell(const Batch& displaced) {
     const size_t stride = size_t(call_.stride);
     for (const BatchPlan::Source& s : plan_->inputs_) {
-        if (s.from != BatchPlan::From::Told) continue;
+        if (s.from != BatchPlan::From::Displacement) continue;
         float* row = storage_.get() + s.firstRow * stride;
-        for (const BatchPlan::Source::Heard& h : s.heard) {
+        for (const BatchPlan::Source::Output& h : s.outputs) {
             const int o = displaced.output(h.output);
             for (int c = 0; o >= 0 && c < s.components; ++c)
                 std::memcpy(row + size_t((h.element * s.components + c) * s.parts + h.part) * stride,
@@ -404,7 +404,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, const Points& points, c
         return fillSpace(s, row, points, views, spaces);
     case From::Parameter:
         return fillParameter(s, row, points, views);
-    case From::Told: // tell()
+    case From::Displacement: // tell()
     case From::Nothing:
         std::fill_n(row, s.rows * size_t(call_.stride), 0.f);
         return;

@@ -68,7 +68,7 @@ public:
 private:
     friend class Batch;
     friend class ParameterRows;
-    enum class From : uint8_t { Variable, Cs, Os, Parameter, Space, Told, Nothing };
+    enum class From : uint8_t { Variable, Cs, Os, Parameter, Space, Displacement, Nothing };
     struct Source {
         From from = From::Nothing;
         bool scalar = false;
@@ -81,12 +81,12 @@ private:
         int16_t offset[6] = {-1, -1, -1,
                              -1, -1, -1}; ///< Variable: byte offset in ShadePoint, by part; -1: zero, -2: one, -3: three, -4: Ngs
         rsl::InputName name;
-        /// Told: outputs of the displacement shader's run that supply the value, by element and part.
-        struct Heard {
+        /// Displacement: outputs of the displacement shader's run that supply the value, by element and part.
+        struct Output {
             rsl::OutputName output;
             int element, part;
         };
-        std::vector<Heard> heard;
+        std::vector<Output> outputs;
     };
     std::vector<Source> inputs_;
     std::vector<size_t> outputRow_;

@@ -42,7 +42,7 @@ std::vector<Case> cases() {
                 all.push_back({"slphong", {mirror, wo, {}, 30}});
                 all.push_back({"diffuse", {n, wo, {}}});
                 for (float g : {-.6f, 0.f, .3f, .9f}) all.push_back({"henyey-greenstein", {n, wo, {}, g}});
-                for (float g : {-.6f, .3f}) all.push_back({"henyey-greenstein-beside", {n, wo, {}, g}});
+                for (float g : {-.6f, .3f}) all.push_back({"henyey-greenstein-toward-light", {n, wo, {}, g}});
                 for (float cone : {0.2f, 1.f, float(kPi) / 2}) {
                     all.push_back({"uniform", {mirror, wo, {}, cone}});
                     all.push_back({"cosine", {n, wo, {}, cone}});

@@ -37,7 +37,7 @@ struct HenyeyGreenstein {
 /// The same value with light-directed sampling: single scattering along a ray is about one over the sine of its angle to a
 /// light's direction, so sampling the phase function alone has unbounded variance. wo = unit, toward the light.
 struct PhaseTowardLight {
-    static constexpr const char* name = "henyey-greenstein-beside";
+    static constexpr const char* name = "henyey-greenstein-toward-light";
     static constexpr const char* doc = "As henyey-greenstein; three of ten draws are even in the angle to a light.";
     static constexpr bool distribution = false;
     static constexpr int needs = kNeedsA | kNeedsWo;
@@ -51,11 +51,11 @@ struct PhaseTowardLight {
         return v;
     }
     static AL_MEMBER vm sample(const Given& p, const Pair<vf>& u, Direction& w) {
-        const vm beside = u.a < kShare;
+        const vm toward = u.a < kShare;
         HenyeyGreenstein::sample(p, {maxLanes((u.a - kShare) / vf(1 - kShare), vf(0)), u.b}, w);
         const Pair<vf> off = unitCircle(minLanes(u.a * vf(0.5f / kShare), vf(0.5f))), d = unitCircle(u.b);
         const Direction b = toWorld(basisAbout(p.wo()), {off.b * d.a, off.b * d.b, off.a});
-        w = {select(beside, b.x, w.x), select(beside, b.y, w.y), select(beside, b.z, w.z)};
+        w = {select(toward, b.x, w.x), select(toward, b.y, w.y), select(toward, b.z, w.z)};
         return u.a >= 0;
     }
 };

@@ -117,4 +117,30 @@ void tubeFrame(const CurveSegment& g, double f, Jet& first, Jet& second, ScalarJ
     radius = halfWidthAt(g, f);
 }
 
+void tubeEnd(const CurveSegment& g, bool end, Vec3d& centre, Vec3d& axis, double& radius) {
+    centre = curveAt(g, end).f;
+    axis = normalize(g.linear ? g.p[2] - g.p[1] : directionAt(g, cubicAt(g.p, end)).f);
+    radius = halfWidthAt(g, end).f;
+}
+
+double tubeAngle(const CurveSegment& g, double f, const Vec3d& point) {
+    Vec3d along = g.p[2] - g.p[1], centre = g.p[1] + along * f;
+    if (!g.linear) {
+        Vec3d d[3];
+        bernsteinSlope<3>(g.p, d);
+        centre = bernsteinAt<3>(g.p, f);
+        along = bernsteinAt<2>(d, f);
+        if (!(dot(along, along) > 0)) along = directionAt(g, cubicAt(g.p, f)).f;
+    }
+    const Vec3d unit = normalize(along);
+    Vec3d first = cross(unit, g.axis), second;
+    if (dot(first, first) > 0) {
+        first = normalize(first);
+        second = cross(unit, first);
+    } else acrossFrame(unit, first, second);
+    const Vec3d w = point - centre;
+    const double u = exact::atan2(dot(w, second), dot(w, first)) / (2 * kPi);
+    return u < 0 ? u + 1 : u;
+}
+
 } // namespace alpenglow::geometry

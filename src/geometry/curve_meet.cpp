@@ -143,11 +143,10 @@ int intersectRibbon(const CurveSegment& g, double from, double to, const CurveFa
 
 namespace {
 
-/// Intersections of the ray, the z axis, with the infinite cone around p0 to p1; number of z. For a near miss (`misses`), two
-/// values around the nearest approach.
-int intersectCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double z[2], bool& misses) {
+/// Intersections of the ray, the z axis, with the infinite cone around p0 to p1, which are l apart; number of z. For a near miss
+/// (`misses`), two values around the nearest approach.
+int intersectCone(const Vec3d& p0, double h0, const Vec3d& p1, double h1, double l, double z[2], bool& misses) {
     misses = false;
-    const double l = length(p1 - p0);
     const Vec3d t = (p1 - p0) / l;
     const double k = (h1 - h0) / l, kk = 1 + k * k, at = dot(p0, t);
     const double a = 1 - kk * t.z * t.z, b = -p0.z + kk * t.z * at - h0 * k * t.z,
@@ -168,7 +167,7 @@ int intersectRoundLine(const CurveSegment& g, const CurveRay& r, CurveHit out[4]
     if (!passesBy(r, ends, 2, 2 * g.widest()) || a == b) return 0;
     double z[2];
     bool misses;
-    const int roots = intersectCone(a, g.h[0], b, g.h[1], z, misses);
+    const int roots = intersectCone(a, g.h[0], b, g.h[1], length(b - a), z, misses);
     const Vec3d along = normalize(b - a), before = normalize(a - r.placed(g.p[0])), behind = normalize(r.placed(g.p[3]) - b);
     // Bisecting planes with the neighbours; ends and turns of more than 120 degrees are cut straight.
     const Vec3d first = dot(before, along) > -0.5 ? along + before : along,

@@ -186,6 +186,7 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
             break;
         }
         curveOf_.insert(curveOf_.end(), k, uint32_t(rows_.size()));
+        for (uint32_t i = 0; i < k && simple(); ++i) firstOf_.push_back(row.vertex + i * step_);
         rows_.push_back(row);
     }
     rows_.push_back({vertex, corner, uint32_t(curveOf_.size()), 0});
@@ -207,16 +208,18 @@ uint32_t CurveSet::segmentAt(int face, double v, double& f) const {
 }
 
 void CurveSet::load(uint32_t segment, CurveSegment& g) const {
-    const Row& r = rows_[curveOf_[segment]];
-    const uint32_t i = segment - r.segment, count = (&r)[1].segment - r.segment;
     g.linear = linear_;
+    // Loads a row only where it is needed: both are misses of the cache, and most segments are missed.
+    const auto row = [&]() -> const Row& { return rows_[curveOf_[segment]]; };
     uint32_t vertex[4];
     if (linear_) {
-        const uint32_t n = count + !periodic_;
+        const Row& r = row();
+        const uint32_t i = segment - r.segment, n = (&r)[1].segment - r.segment + !periodic_;
         const auto at = [&](uint32_t k) { return r.vertex + (periodic_ ? (i + n + k - 1) % n : std::clamp(i + k, 1u, n) - 1); };
         for (uint32_t k = 0; k < 4; ++k) g.p[k] = point(vertex[k] = at(k));
     } else {
-        for (uint32_t k = 0; k < 4; ++k) vertex[k] = vertexOf(r, i, k);
+        for (uint32_t k = 0; k < 4; ++k)
+            vertex[k] = simple() ? firstOf_[segment] + k : vertexOf(row(), segment - row().segment, k);
         for (uint32_t k = 0; k < 4; ++k) g.p[k] = point(vertex[k]);
         if (!bezier_) {
             Vec3d q[4];
@@ -235,9 +238,12 @@ void CurveSet::load(uint32_t segment, CurveSegment& g) const {
             return;
         }
         uint32_t from = 0, to = 0;
-        if (c == Class::Uniform) from = to = r.face;
+        if (c == Class::Uniform) from = to = row().face;
         else if (c == Class::Vertex) from = vertex[1], to = vertex[2];
-        else if (c != Class::Constant) from = cornerOf(r, i, 0), to = cornerOf(r, i, 1);
+        else if (c != Class::Constant) {
+            from = cornerOf(row(), segment - row().segment, 0);
+            to = cornerOf(row(), segment - row().segment, 1);
+        }
         const auto a = value(from), b = value(to);
         out[0] = a;
         if (linear_) out[1] = b;
@@ -249,22 +255,27 @@ void CurveSet::load(uint32_t segment, CurveSegment& g) const {
             normalClass_,
             [&](uint32_t k) { return Vec3d(normal_[3 * size_t(k)], normal_[3 * size_t(k) + 1], normal_[3 * size_t(k) + 2]); },
             g.n);
+}
+
+Vec3d CurveSet::axis(uint32_t segment) const {
+    const Row& r = rows_[curveOf_[segment]];
+    const uint32_t count = (&r)[1].segment - r.segment;
     const Vec3d chord = point(vertexOf(r, count - 1, linear_ ? 1 : 3)) - point(r.vertex);
     const double x = std::fabs(chord.x), y = std::fabs(chord.y), z = std::fabs(chord.z);
-    g.axis = x <= y && x <= z ? Vec3d(1, 0, 0) : y <= z ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
+    return x <= y && x <= z ? Vec3d(1, 0, 0) : y <= z ? Vec3d(0, 1, 0) : Vec3d(0, 0, 1);
 }
 
 void CurveSet::fetch(uint32_t segment) const {
+    const auto points = [&](uint32_t vertex) {
+        __builtin_prefetch(P_ + 3 * size_t(vertex));
+        __builtin_prefetch(P_ + 3 * size_t(vertex) + 11);
+        if (width_.cls == Class::Vertex) __builtin_prefetch(width_.values + vertex);
+    };
+    const bool corners = width_.cls == Class::Varying || width_.cls == Class::FaceVarying;
+    if (simple() && !corners) return points(firstOf_[segment]);
     const Row& r = rows_[curveOf_[segment]];
-    const uint32_t i = segment - r.segment, count = (&r)[1].segment - r.segment;
-    const auto at = [&](uint32_t vertex) { return P_ + 3 * size_t(vertex); };
-    const float* own = at(vertexOf(r, i, 0));
-    __builtin_prefetch(own);
-    __builtin_prefetch(own + 11);
-    __builtin_prefetch(at(r.vertex));
-    __builtin_prefetch(at(vertexOf(r, count - 1, linear_ ? 1 : 3)));
-    if (width_.cls == Class::Vertex) __builtin_prefetch(width_.values + vertexOf(r, i, 0));
-    else if (width_.cls != Class::Constant && width_.cls != Class::Uniform) __builtin_prefetch(width_.values + cornerOf(r, i, 0));
+    points(vertexOf(r, segment - r.segment, 0));
+    if (corners) __builtin_prefetch(width_.values + cornerOf(r, segment - r.segment, 0));
 }
 
 int CurveSet::weights(Class c, uint32_t segment, double f, Weight w[16]) const {

@@ -76,6 +76,8 @@ protected:
 private:
     void load(uint32_t segment, float time, CurveSegment& out) const;
     void load(uint32_t segment, size_t key, double way, CurveSegment& out) const;
+    /// Without CurveSegment::axis.
+    void loadPoints(uint32_t segment, size_t key, double way, CurveSegment& out) const;
     /// The part of a segment that a primitive is.
     void part(uint32_t prim, double& from, double& to) const {
         from = double(prim % parts_) / parts_;
@@ -155,6 +157,10 @@ void Curves::load(uint32_t segment, float time, CurveSegment& g) const {
     load(segment, k, way, g);
 }
 void Curves::load(uint32_t segment, size_t k, double way, CurveSegment& g) const {
+    loadPoints(segment, k, way, g);
+    g.axis = set_.axis(segment); // of the first key: otherwise the frame could flip at a key
+}
+void Curves::loadPoints(uint32_t segment, size_t k, double way, CurveSegment& g) const {
     static_cast<const Curves&>(key(k)).set_.load(segment, g);
     CurveSegment to;
     if (way != 0 && k + 1 < keys()) {
@@ -165,7 +171,6 @@ void Curves::load(uint32_t segment, size_t k, double way, CurveSegment& g) const
             g.n[i] = g.n[i] * (1 - way) + to.n[i] * way;
         }
     }
-    if (k > 0) set_.load(segment, to), g.axis = to.axis; // a constant axis, otherwise the frame could flip at a key
 }
 
 void Curves::exactBoundsOf(uint32_t first, std::span<Bounds> out) const {
@@ -198,7 +203,9 @@ double Curves::turnOf(const CurveSegment& g, double f, const Vec3d& across) cons
 int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted wanted, float time,
                         ExactHit out[4]) const {
     CurveSegment g;
-    load(prim / parts_, time, g);
+    double way;
+    const size_t k = keyAt(time, way);
+    loadPoints(prim / parts_, k, way, g);
     const Vec3d o = toObject(org), d = transformVector(toObject_, dir);
     const double dd = dot(d, d);
     if (!(dd > 0) || !std::isfinite(dd)) return 0;
@@ -220,13 +227,8 @@ int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
         if (wanted == Wanted::Any) break;
         if (fromRay_) out[i].u += 2 * turnOf(g, h.f, h.across);
         if (!round) continue;
-        Jet a, b;
-        ScalarJet radius;
-        const double f = onDisc(h.f) ? double(h.f > 0) : h.f;
-        tubeFrame(g, f, a, b, radius);
-        const Vec3d w = o + d * h.t - curveAt(g, f).f;
-        const double u = exact::atan2(dot(w, b.f), dot(w, a.f)) / (2 * kPi);
-        out[i].u = u < 0 ? u + 1 : u;
+        g.axis = set_.axis(prim / parts_);
+        out[i].u = tubeAngle(g, onDisc(h.f) ? double(h.f > 0) : h.f, o + d * h.t);
     }
     return n;
 }
@@ -235,15 +237,15 @@ int Curves::exactHitsAt(uint32_t prim, const Vec3d& org, const Vec3d& dir, doubl
 void Curves::intersectDiscs(const CurveSegment& g, uint32_t prim, const CurveRay& ray, CurveHit* hits, int& n) const {
     for (const bool end : {false, true}) {
         if (prim % parts_ != (end ? parts_ - 1 : 0) || !closedAt(prim / parts_, end)) continue;
-        Jet a, b;
-        ScalarJet radius;
-        tubeFrame(g, end, a, b, radius);
-        const Vec3d axis = cross(a.f, b.f), c = curveAt(g, end).f - ray.org;
+        Vec3d centre, axis;
+        double radius;
+        tubeEnd(g, end, centre, axis, radius);
+        const Vec3d c = centre - ray.org;
         const double along = dot(ray.e3, axis);
-        if (!(radius.f > 0) || !(std::fabs(along) > 0)) continue;
+        if (!(radius > 0) || !(std::fabs(along) > 0)) continue;
         const double z = dot(c, axis) / along, t = ray.t(z);
         const Vec3d w = ray.e3 * z - c;
-        const double out = std::sqrt(dot(w, w)) / radius.f;
+        const double out = std::sqrt(dot(w, w)) / radius;
         // Up to the tube, including its rounding error.
         if (!(t > ray.lo && t <= ray.hi) || !(out <= 1 + 1e-9)) continue;
         hits[n++] = {t, 0, end ? kLast - std::min(out, 1.0) : kFirst + std::min(out, 1.0), {}};

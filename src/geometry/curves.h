@@ -57,6 +57,10 @@ Jet curveAt(const CurveSegment&, double f);
 Jet sideAt(const CurveSegment&, const CurveFacing&, double f);
 /// Two unit vectors across a tube, the first where u is 0, and its radius.
 void tubeFrame(const CurveSegment&, double f, Jet& first, Jet& second, ScalarJet& radius);
+/// u of a point near a tube, 0 to 1: its angle about the position at f, from the first vector of tubeFrame() to the second.
+double tubeAngle(const CurveSegment&, double f, const Vec3d& point);
+/// The start of a segment, or its end: position, unit direction along the curve, radius.
+void tubeEnd(const CurveSegment&, bool end, Vec3d& centre, Vec3d& axis, double& radius);
 /// Two unit vectors perpendicular to `along`, for rotation around it. along need not be unit.
 void acrossFrame(const Vec3d& along, Vec3d& a, Vec3d& b);
 
@@ -101,7 +105,10 @@ public:
     }
     /// The segment that contains v of a curve, and the position in it; curves that are not drawn are replaced by the next.
     uint32_t segmentAt(int face, double v, double& f) const;
+    /// Without CurveSegment::axis.
     void load(uint32_t segment, CurveSegment& out) const;
+    /// CurveSegment::axis, the same for all segments of a curve.
+    Vec3d axis(uint32_t segment) const;
     /// Prefetches the data for load().
     void fetch(uint32_t segment) const;
     size_t classCount(scene::Class) const;
@@ -146,6 +153,9 @@ private:
     size_t vertices_ = 0, varying_ = 0;
     std::vector<Row> rows_;         ///< of drawn curves; one more at the end
     std::vector<uint32_t> curveOf_; ///< row by segment
+    std::vector<uint32_t> firstOf_; ///< if simple(): first vertex by segment
+    /// Whether the points of a segment are consecutive.
+    bool simple() const { return !linear_ && !periodic_; }
 };
 
 } // namespace alpenglow::geometry

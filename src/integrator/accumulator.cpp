@@ -3,6 +3,7 @@
 #include "integrator/context.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/stageset.h"
+#include <algorithm>
 
 namespace alpenglow::integrator {
 
@@ -19,7 +20,11 @@ void Accumulator::contribute(Sched& sched, const Contribution& d) {
     if (!isFinite(d.light) && d.event != LightEvent::Output) // the target counts those
         return notFinite(d.path, d.event == LightEvent::Sampled ? "light that is sampled" : "light", d.of);
     // Rays of the caustic guide carry only the light of lights that they hit; all other light belongs to the lobe's own ray.
-    if (d.path && d.path->guided() && d.event != LightEvent::Met && d.event != LightEvent::Sky) return;
+    if (d.path && d.path->guided()) {
+        if (d.event != LightEvent::Met && d.event != LightEvent::Sky) return;
+        ++counters_.guidedLit;
+        counters_.guidedLight += uint64_t(std::clamp(double(luminance(d.light)), 0.0, 1e9) / Counters::kLightUnit);
+    }
     sched.add(d.target, d.light);
     contributePart(sched, d.path, d.end, d.light);
     for (int32_t share = d.share; share >= 0; share = shares[size_t(share)].next)

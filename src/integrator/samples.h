@@ -23,7 +23,10 @@ struct Counters {
     uint64_t inRows = 0; ///< of `points`, those whose requests were read in rows; for waiting kernels, their calls
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0;
-    uint64_t guided = 0;                    ///< rays aimed by the caustic guide; also counted in the other counters
+    uint64_t guided = 0;      ///< rays aimed by the caustic guide; also counted in the other counters
+    uint64_t guidedLit = 0;   ///< those that found light
+    uint64_t guidedLight = 0; ///< sum of the luminance they brought, in units of kLightUnit: exact in any order
+    static constexpr double kLightUnit = 0x1p-20;
     uint64_t records = 0, interpolated = 0; ///< irradiance records made, and lookups interpolated from them
     int depthMax = 0;
     size_t peakFrameBytes = 0; ///< largest size of suspended kernel frames at one time, over all threads

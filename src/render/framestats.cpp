@@ -38,8 +38,8 @@ void accumulate(RenderStats& all, const RenderStats& f) {
         all.classic.*member += before.classic.*member;
     all.shading.points += before.shading.points;
     all.shading.batches += before.shading.batches;
-    for (auto member :
-         {&RenderStats::Guide::photons, &RenderStats::Guide::cells, &RenderStats::Guide::lobes, &RenderStats::Guide::rays})
+    for (auto member : {&RenderStats::Guide::photons, &RenderStats::Guide::cells, &RenderStats::Guide::lobes,
+                        &RenderStats::Guide::rays, &RenderStats::Guide::lit, &RenderStats::Guide::light})
         all.guide.*member += before.guide.*member;
     for (auto member : {&RenderStats::LightGuide::samples, &RenderStats::LightGuide::lights, &RenderStats::LightGuide::cells,
                         &RenderStats::LightGuide::used})

@@ -114,6 +114,8 @@ integrator::Counters Job::counters() const {
         all.depthSum += c.depthSum;
         all.paths += c.paths;
         all.guided += c.guided;
+        all.guidedLit += c.guidedLit;
+        all.guidedLight += c.guidedLight;
         all.records += c.records;
         all.interpolated += c.interpolated;
         all.depthMax = std::max(all.depthMax, c.depthMax);

@@ -1,4 +1,5 @@
 #include "render/stats.h"
+#include "integrator/samples.h"
 #include "render/progress.h"
 #include <cmath>
 #include <fmt/format.h>
@@ -21,6 +22,13 @@ std::string grouped(uint64_t n) {
     std::string s = std::to_string(n);
     for (int i = int(s.size()) - 3; i > 0; i -= 3) s.insert(size_t(i), ",");
     return s;
+}
+
+/// Mean luminance that rays of the caustic guide brought, over the camera rays.
+double guidedLight(const RenderStats& s) {
+    const auto camera = s.rays.find("camera");
+    if (camera == s.rays.end() || !camera->second) return 0;
+    return double(s.guide.light) * integrator::Counters::kLightUnit / double(camera->second);
 }
 
 } // namespace
@@ -71,7 +79,8 @@ std::string toJson(const RenderStats& s) {
                     {"suspendingKernels", s.shading.suspendingKernels},
                     {"kernels", s.shading.kernels},
                     {"cacheHits", s.shading.cacheHits}};
-    j["guide"] = {{"photons", s.guide.photons}, {"cells", s.guide.cells}, {"lobes", s.guide.lobes}, {"rays", s.guide.rays}};
+    j["guide"] = {{"photons", s.guide.photons}, {"cells", s.guide.cells}, {"lobes", s.guide.lobes},
+                  {"rays", s.guide.rays},       {"lit", s.guide.lit},     {"light", guidedLight(s)}};
     const RenderStats::LightGuide& l = s.lightGuide;
     j["lightGuide"] = {{"samples", l.samples}, {"lights", l.lights}, {"cells", l.cells}, {"used", l.used}};
     j["depth"] = {{"maximum", s.depth.maximum}, {"average", finite(s.depth.average)}};
@@ -110,9 +119,11 @@ std::string toTable(const RenderStats& s) {
                                    grouped(s.shading.points), grouped(s.shading.batches), 100 * s.shading.laneOccupancy,
                                    s.shading.kernels, s.shading.affineKernels, s.shading.suspendingKernels, s.shading.cacheHits));
     if (s.guide.cells)
-        row("guide", fmt::format("{} photons of mirrors and glass, {} cells, {} lobes; {} rays aimed, {:.1f} % of all",
+        row("guide", fmt::format("{} photons of mirrors and glass, {} cells, {} lobes; {} rays aimed, {:.1f} % of all, of which "
+                                 "{:.1f} % found light: {:.3g} of luminance a camera ray",
                                  grouped(s.guide.photons), grouped(s.guide.cells), grouped(s.guide.lobes), grouped(s.guide.rays),
-                                 100 * double(s.guide.rays) / double(std::max<uint64_t>(s.totalRays, 1))));
+                                 100 * double(s.guide.rays) / double(std::max<uint64_t>(s.totalRays, 1)),
+                                 100 * double(s.guide.lit) / double(std::max<uint64_t>(s.guide.rays, 1)), guidedLight(s)));
     if (s.lightGuide.used)
         row("lights",
             fmt::format("{} sampled where they are visible, by {} samples, in {} of {} cells", grouped(s.lightGuide.lights),

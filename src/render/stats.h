@@ -38,6 +38,8 @@ struct RenderStats {
     /// count in `rays`.
     struct Guide {
         uint64_t photons = 0, cells = 0, lobes = 0, rays = 0;
+        uint64_t lit = 0;   ///< rays that found light
+        uint64_t light = 0; ///< integrator::Counters::guidedLight
     } guide;
     /// The guides of light samples under path (docs/light.md): light samples that they were built from, lights that have one,
     /// their cells, and cells where samples follow them.

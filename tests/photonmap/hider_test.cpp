@@ -1,6 +1,8 @@
 // Photons as a user has them: maps written, read, damaged, made on demand; more than there is room for; the same bits over
 // threads.
+#include "base/vec.h"
 #include "cli/command_folder.h"
+#include "display/imageio.h"
 #include "photonmap/limits.h"
 #include "statistics/nightly.h"
 #include <cmath>
@@ -170,6 +172,17 @@ std::string glassRoom(const std::string& hider = "") {
            "Surface \"slmaterial\" \"color diffusecolor\" [.8 .6 .4] Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\nWorldEnd\n";
 }
 
+double meanLuminance(const std::filesystem::path& file) {
+    Diagnostics diagnostics;
+    const auto picture = display::readImage(file.string(), diagnostics);
+    if (!picture) return NAN;
+    const size_t width = picture->channels.size();
+    double sum = 0;
+    for (size_t i = 0; i + 2 < picture->data.size(); i += width)
+        sum += double(luminance(Color{picture->data[i], picture->data[i + 1], picture->data[i + 2]}));
+    return sum * double(width) / double(picture->data.size());
+}
+
 TEST_F(PhotonHider, GuidedPathsAreTheSameHoweverTheyAreSplit) {
     write("glass.rib", glassRoom());
     const auto picture = [&](const std::string& options, const std::string& name = "a.exr") {
@@ -183,6 +196,15 @@ TEST_F(PhotonHider, GuidedPathsAreTheSameHoweverTheyAreSplit) {
     EXPECT_GT(stats["guide"]["photons"], 100);
     EXPECT_GT(stats["guide"]["cells"], 5);
     EXPECT_GT(stats["guide"]["rays"], 1000);
+    const uint64_t lit = stats["guide"]["lit"];
+    EXPECT_GT(lit, 100u);
+    EXPECT_LT(lit, stats["guide"]["rays"].get<uint64_t>());
+    // The caustic is a part of the light of the picture.
+    const double light = stats["guide"]["light"], all = meanLuminance(dir / "a.exr");
+    EXPECT_GT(light, 0.001 * all);
+    EXPECT_LT(light, all);
+    run("render glass.rib -q --spp 12 -o a.exr --threads 3 --stats t.json", "2>&1");
+    EXPECT_EQ(nlohmann::json::parse(read(dir / "t.json"))["guide"], stats["guide"]);
     for (const char* options : {"--threads 2", "--threads 5", "--lanes 4", "--lanes 16 --threads 3"})
         EXPECT_TRUE(picture(options) == whole) << options;
     for (const char* k : {"1", "2", "3"}) picture(std::string("--part ") + k + "/3", std::string("p") + k + ".exr");

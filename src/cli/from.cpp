@@ -117,7 +117,7 @@ void addFrom(CLI::App& app, int* status) {
     c->add_option("--material", a->material, "Which material of an .mtlx file, by name; the first when not given")
         ->type_name("NAME");
     c->add_flag("-q,--quiet", a->quiet, "Errors only");
-    c->footer("Maps are written beside the RIB. alpenglow model.glb renders a model at once.");
+    c->footer("Maps are written next to the RIB. alpenglow model.glb renders a model at once.");
     c->callback([a, status] {
         a->rib.addLights = !a->noLights;
         *status = convertModel(*a);

@@ -35,7 +35,7 @@ void addMerge(CLI::App& app, int* status) {
     c->add_flag("--json", a->json, "Print messages as JSON, under \"diagnostics\"");
     c->footer(
         "Parts fit when scene, options, seed and crop window are the same and no sample is in two of them. Samples that are\n"
-        "missing between them are warned about; the picture is written all the same, with a part file beside it, so that\n"
+        "missing between them are warned about; the picture is written all the same, with a part file next to it, so that\n"
         "the missing part can be merged with it later.");
     c->callback([a, status] {
         if (const std::string fault = a->output.empty() ? "" : faultOfPictureName(a->output, true); !fault.empty())

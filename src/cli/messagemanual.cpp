@@ -126,10 +126,10 @@ OrderedJson messageJson(const std::string& id) {
 std::string messagesPage() {
     std::string out =
         "# Messages of the compiler\n\n"
-        "Every message about a shader has an id, which stands behind it in brackets and never changes. This page tells what\n"
+        "Every message about a shader has an id, which stands behind it in brackets and never changes. This page says what\n"
         "each means and what to do, with a program that has this message and no other. It is made from the table of messages\n"
         "by `alpenglow info --messages --markdown`; tests hold the page to the table and compile the programs.\n"
-        "`alpenglow compile --explain ID` prints one of them. Editors show the id beside the message.\n\n"
+        "`alpenglow compile --explain ID` prints one of them. Editors show the id next to the message.\n\n"
         "`...` stands for names, types and numbers.\n";
     for (const MessageKind* kind : rsl::messageKinds()) {
         for (const rsl::MessageSubject& s : rsl::messageSubjects())

@@ -38,7 +38,7 @@ constexpr OldName kOldNames[] = {
     {"shader", "compile", ""},
     {"shaderdl", "compile", ""},
     {"shaderinfo", "info", ""},
-    {"sho", "info", "no window is opened: what is in the picture is told"},
+    {"sho", "info", "no window is opened: it prints what is in the picture"},
     {"slc", "compile", ""},
     {"sloinfo", "info", ""},
     {"sltell", "info", ""},
@@ -119,16 +119,16 @@ constexpr OldFlag kCompileFlags[] = {
 };
 
 constexpr OldFlag kInfoFlags[] = {
-    {"-a", 0, "shaderinfo", Use::Dropped, "everything is told"},
-    {"-archive", 0, "aqsltell", Use::Dropped, "everything is told"},
-    {"-d", 0, "shaderinfo", Use::Dropped, "everything is told"},
-    {"-info", 0, "ptviewer", Use::Dropped, "everything is told"},
+    {"-a", 0, "shaderinfo", Use::Dropped, "everything is printed"},
+    {"-archive", 0, "aqsltell", Use::Dropped, "everything is printed"},
+    {"-d", 0, "shaderinfo", Use::Dropped, "everything is printed"},
+    {"-info", 0, "ptviewer", Use::Dropped, "everything is printed"},
     {"-m", 0, "sloinfo", Use::Accepted, "--json"},
     {"-multiply", 1, "ptviewer", Use::Dropped, "no window is opened"},
-    {"-onlyinfo", 0, "ptviewer", Use::Dropped, "everything is told"},
-    {"-p", 0, "sloinfo", Use::Dropped, "everything is told"},
-    {"-t", 0, "shaderinfo", Use::Dropped, "everything is told"},
-    {"-v", 0, "sloinfo", Use::Dropped, "everything is told"},
+    {"-onlyinfo", 0, "ptviewer", Use::Dropped, "everything is printed"},
+    {"-p", 0, "sloinfo", Use::Dropped, "everything is printed"},
+    {"-t", 0, "shaderinfo", Use::Dropped, "everything is printed"},
+    {"-v", 0, "sloinfo", Use::Dropped, "everything is printed"},
     {"-window", 2, "ptviewer", Use::Dropped, "no window is opened"},
 };
 
@@ -230,7 +230,8 @@ std::string oldNamesPage() {
                    ? fmt::format("| `{}` | not done: {} |\n", n.name, n.instead)
                    : fmt::format("| `{}` | `alpenglow {}`{}{} |\n", n.name, n.command, n.instead.empty() ? "" : "; ", n.instead);
     for (const std::string_view command : {"maketx", "compile", "info", "rib", "ptc"})
-        out += fmt::format("\nFlags that `alpenglow {}` takes beside its own:\n\n{}", command, flagsPage(toolFlags(command)));
+        out += fmt::format("\nFlags that `alpenglow {}` takes in addition to its own:\n\n{}", command,
+                           flagsPage(toolFlags(command)));
     return out;
 }
 

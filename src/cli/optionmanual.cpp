@@ -203,7 +203,7 @@ std::string optionsPage() {
            "behind the\n"
            "paths of the scene, `--searchpath`, the scene's own folder and the shipped shaders: a picture whose files are found "
            "without\n"
-           "them is the same with them. `-v` and `--stats` tell which are in effect. `man alpenglow` lists those of Alpenglow "
+           "them is the same with them. `-v` and `--stats` show which are in effect. `man alpenglow` lists those of Alpenglow "
            "itself.\n"
            "In `Option \"searchpath\"`, `$NAME`, `${NAME}` and `~` are taken from the environment.\n\n" +
            foreignVariablesPage();

@@ -162,7 +162,7 @@ std::vector<std::string> optionsOfRcFiles(const std::vector<std::string>& args) 
 
 /// Status 2, with the reason and where to read on.
 int wrongUse(const std::string& why, const std::string& more) {
-    std::fprintf(stderr, "alpenglow: %s\n%s tells more.\n", printable(why).c_str(), more.c_str());
+    std::fprintf(stderr, "alpenglow: %s\nSee %s for more.\n", printable(why).c_str(), more.c_str());
     return kWrongUse;
 }
 
@@ -175,7 +175,7 @@ int runProgram(int argc, char** argv) {
     app.set_version_flag("--version", versionReport);
     app.require_subcommand(1);
     app.get_formatter()->column_width(34);
-    app.footer("alpenglow scene.rib is the same as alpenglow render scene.rib. alpenglow help COMMAND tells more.\n"
+    app.footer("alpenglow scene.rib is the same as alpenglow render scene.rib. See alpenglow help COMMAND for more.\n"
                "Flags of prman, renderdl and aqsis (-t:4, -res 640 480, -progress) work too: docs/options.md lists them.\n\n" +
                exitStatuses());
     addRender(app, &status, commandText(argc, argv));

@@ -121,7 +121,7 @@ std::string bounced(pointcloud::PointCloud& cloud, const PtcArguments& a) {
     return pointcloud::bounce(cloud, o);
 }
 
-/// What is in files, as `info` tells it.
+/// What is in files, as `info` shows it.
 int tell(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
     bool all = true;
     found["files"] = nlohmann::ordered_json::array();
@@ -160,12 +160,12 @@ int runPtc(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found)
     if (a.action == "bounce")
         if (const std::string fault = bounced(all, a); !fault.empty()) {
             d.report(Severity::Error, Rie::MissingData, {}, "\"" + a.files[0] + "\": " + fault,
-                     "alpenglow ptc info tells what there is");
+                     "alpenglow ptc info shows what there is");
             return kNothingRendered;
         }
     if (a.action == "picture" && !a.channel.empty() && all.offsetOf(a.channel) < 0) {
         d.report(Severity::Error, Rie::MissingData, {}, "there is no channel \"" + a.channel + "\" in it",
-                 "alpenglow ptc info tells what there is");
+                 "alpenglow ptc info shows what there is");
         return kNothingRendered;
     }
     const bool written = a.action == "picture" ? writePicture(out, all, a, d)
@@ -210,7 +210,7 @@ void addPtc(CLI::App& app, int* status) {
         ->check(CLI::IsMember({"x", "y", "z", "-x", "-y", "-z"}))
         ->type_name("AXIS");
     picture->add_option("--size", a->size, "Size of the picture, in pixels")->check(between(1, 8192))->type_name("PIXELS");
-    c->add_flag("--json", a->json, "As JSON: what info tells under \"files\", messages under \"diagnostics\"");
+    c->add_flag("--json", a->json, "As JSON: what info shows under \"files\", messages under \"diagnostics\"");
     c->footer("alpenglow ptc brick room.ptc room.bkm. docs/pointclouds.md describes the files.");
     c->callback([a, status] {
         nlohmann::ordered_json said, found = nlohmann::ordered_json::object();

@@ -20,7 +20,7 @@ inline constexpr const char* kRcFilesText =
     "and, "
     "on lines that begin with --, options of the command line, which have the last word there. First comes "
     "$XDG_CONFIG_HOME/alpenglow/alpenglowrc (~/.config/alpenglow/alpenglowrc), then ~/.alpenglowrc, then .alpenglowrc in the "
-    "current folder, which may hold RIB only. Each that is read is told. --no-rc or ALPENGLOW_RC=off read none.";
+    "current folder, which may hold RIB only. A message names each that is read. --no-rc or ALPENGLOW_RC=off read none.";
 
 /// The files that there are, in the order in which they are read, so that later ones have the last word:
 /// $XDG_CONFIG_HOME/alpenglow/alpenglowrc (~/.config without the variable), ~/.alpenglowrc, ./.alpenglowrc. The variable

@@ -111,7 +111,7 @@ void checkSettings(RenderArguments& a, const CLI::App& app) {
     s.indirect = !a.noIndirect;
     if (const std::string fault = s.output.empty() ? "" : faultOfPictureName(s.output, true); !fault.empty()) wrong("-o", fault);
     if (s.output == "-" && (s.samples || s.part))
-        wrong("-o", "with --samples or --part a part file lies beside the picture: name a file");
+        wrong("-o", "with --samples or --part a part file lies next to the picture: name a file");
     if (s.resume && s.checkpoint.empty()) wrong("--resume", "needs --checkpoint FILE");
     if (s.restart && s.checkpoint.empty()) wrong("--restart", "needs --checkpoint FILE");
     if (a.preset == "slproject") {

@@ -12,7 +12,7 @@ struct DiceCamera {
     bool perspective = false;
     double pixelsPerUnit = 1; ///< at distance 1 for a perspective camera, anywhere for an orthographic one
     double narrowest = 1;     ///< smallest foreshortening of a step along the line of sight; 1: none
-    /// Length in pixels of a step d at p (camera space). By distance rather than depth: geometry beside or behind the camera is
+    /// Length in pixels of a step d at p (camera space). By distance rather than depth: geometry next to or behind the camera is
     /// visible in mirrors and must not degenerate.
     double pixels(const Vec3d& p, const Vec3d& d) const;
     /// From the frame's options (RISpec 3.2, 4.1.1); unknown projections count as orthographic.

@@ -17,7 +17,7 @@ public:
 private:
     Profile profile(double v) const override {
         double k = zmax_ - zmin_, z = zmin_ + v * k;
-        // At the apex the radius grows like a root: derivatives are taken slightly beside it.
+        // At the apex the radius grows like a root: derivatives are taken slightly next to it.
         double x = std::max(z / zref_, 0.0), y = std::max(x, 1e-9), root = std::sqrt(y), dx = k / zref_;
         return {{r_ * std::sqrt(x), 0, z}, {r_ * dx / (2 * root), 0, k}, {-r_ * dx * dx / (4 * root * y), 0, 0}};
     }

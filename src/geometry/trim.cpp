@@ -257,7 +257,7 @@ std::shared_ptr<const TrimRegion> TrimRegion::make(const scene::ParamList& curve
         maker.closeLoop();
     }
     widestGap = maker.widestGap;
-    // Pieces beside the square, or horizontal in v, are never crossed there.
+    // Pieces outside of the square, or horizontal in v, are never crossed there.
     std::erase_if(region->pieces_,
                   [](const Piece& p) { return p.v0 == p.v1 || std::max(p.v0, p.v1) < 0 || std::min(p.v0, p.v1) > 1; });
     region->makeStrips();

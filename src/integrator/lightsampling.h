@@ -24,7 +24,7 @@ public:
     LightSampling(const StageSet&, const VertexStages&);
     ~LightSampling();
     void run(BatchContext&, Sched&);
-    /// Records what lights may query of the lit surfaces: VertexBlocks::told.
+    /// Records what lights may query of the lit surfaces: VertexBlocks::litSurface.
     void tellLights(const BatchContext&);
     /// Whether points in media need structures, because lights there read more than rows hold.
     bool needsPoints(const SurfaceBinding&) const;

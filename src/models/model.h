@@ -90,9 +90,9 @@ struct Skin {
 struct Camera {
     std::string name;
     bool perspective = true;
-    double yfov = 0.8, aspect = 0; ///< aspect: width by height, 0: not told
+    double yfov = 0.8, aspect = 0; ///< aspect: width by height, 0: not given
     double halfHeight = 1;         ///< orthographic
-    double near = 0, far = 0;      ///< 0: not told. It looks along -z, y is up
+    double near = 0, far = 0;      ///< 0: not given. It looks along -z, y is up
 };
 
 enum class LightKind : uint8_t { Point, Spot, Sun };

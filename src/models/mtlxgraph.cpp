@@ -174,7 +174,7 @@ std::string MtlxGraph::text(const XmlElement& n, Scope s, const char* name, cons
     return x && !x->attribute("value").empty() ? x->attribute("value") : byDefault;
 }
 
-/// The nearest that is told: of the file's name, the node, the graph, the document.
+/// The nearest that is given: of the file's name, the node, the graph, the document.
 const std::string& MtlxGraph::spaceOfColours(const XmlElement& n, Scope s) const {
     const XmlElement* x = inputOf(n, "file");
     if (x && s.graph && !x->attribute("interfacename").empty()) x = inputOf(*s.graph, x->attribute("interfacename"));

@@ -101,7 +101,7 @@ void Writer::box(Vec3d& lo, Vec3d& hi) const {
     if (!(lo.x <= hi.x)) lo = Vec3d(-1.0), hi = Vec3d(1.0);
 }
 
-/// All of it from a little above and beside its front (+z), as cli/modelscene.cpp shows .ply.
+/// All of it from its front (+z), a little above and to one side, as cli/modelscene.cpp shows .ply.
 void Writer::ownCamera() {
     Vec3d lo, hi;
     box(lo, hi);

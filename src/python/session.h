@@ -13,7 +13,7 @@ namespace alpenglow::python {
 /// From RiBegin to RiEnd. One thread at a time; requests of another one, or while a frame is rendered, are an Error.
 class Session {
 public:
-    /// Renders. flags: of `alpenglow render`. script: the file that calls; archives, shaders and maps are looked for beside it,
+    /// Renders. flags: of `alpenglow render`. script: the file that calls; archives, shaders and maps are looked for next to it,
     /// too. keep: pictures are kept for pictures(). progress: called with progressDict(), or None.
     Session(std::vector<std::string> flags, const std::string& script, bool keep, py::object message, py::object progress);
     /// Writes RIB to a file, or to standard output ("-").

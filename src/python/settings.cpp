@@ -15,7 +15,7 @@ namespace {
 constexpr std::pair<const char*, const char*> kRefused[] = {
     {"--watch", "call render() again"},
     {"--cwd", "os.chdir() does this"},
-    {"--preview", "progress= tells how far it is"},
+    {"--preview", "progress= reports how far it is"},
     {"--frames-at-once", "processes are yours: multiprocessing"},
     {"--pixel", "take it from the picture"},
 };

@@ -41,7 +41,7 @@ public:
     virtual std::unique_ptr<Film> filmFor(const FilmDescription&) { return nullptr; }
     /// Called under path after each pass, else when the picture is complete; and about every 20 ms in between.
     virtual void look(const Glance&) {}
-    /// How far the samples of a frame are, as often as the progress line is told. what: the picture.
+    /// How far the samples of a frame are, as often as the progress line is updated. what: the picture.
     virtual void progress(const ProgressState&, const std::string& what) { (void)what; }
     /// The end of a frame; also of one that was interrupted. Under path with its film, if a pass is whole.
     virtual void finished(std::unique_ptr<Film>) {}

@@ -1,4 +1,4 @@
-// The bitcode files of the build folder as arrays, by the assembler's .incbin; those of few lanes as files beside the modules.
+// The bitcode files of the build folder as arrays, by the assembler's .incbin; those of few lanes as files next to the modules.
 #include "shadeops/bitcode.h"
 #include "base/digest.h"
 #include "shadeops/descriptor.h"

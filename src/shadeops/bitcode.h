@@ -1,5 +1,5 @@
 // The runtime as LLVM bitcode: the same templates as sections.cpp, compiled at other widths. For 16 lanes and more it is part of
-// the program; for 4 and 8 it is in the files alpenglow_runtime4.bc and alpenglow_runtime8.bc beside the program's modules.
+// the program; for 4 and 8 it is in the files alpenglow_runtime4.bc and alpenglow_runtime8.bc next to the program's modules.
 #pragma once
 #include <cstddef>
 #include <string>

@@ -15,7 +15,8 @@ NarrowRuntime readNarrow(int lanes, std::string_view hash) {
     const std::string wish = ": build it by `ninja -C build/release narrow_lanes`, or leave out --lanes";
     const std::string file = moduleFile(name.c_str(), nullptr);
     if (file.empty())
-        return {{}, "shaders in 4 or 8 lanes need " + name + ", which is neither beside the program nor in lib/alpenglow" + wish};
+        return {{},
+                "shaders in 4 or 8 lanes need " + name + ", which is neither next to the program nor in lib/alpenglow" + wish};
     Diagnostics quiet;
     std::optional<std::vector<uint8_t>> bytes = readWholeFile(file, kMost, quiet);
     if (!bytes) return {{}, file + ", which shaders in 4 or 8 lanes need, cannot be read"};

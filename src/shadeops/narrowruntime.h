@@ -1,4 +1,4 @@
-// The runtime for 4 and 8 lanes: files beside the program's modules, because a render is asked for it by --lanes alone.
+// The runtime for 4 and 8 lanes: files next to the program's modules, because a render is asked for it by --lanes alone.
 #pragma once
 #include <cstdint>
 #include <string>

@@ -117,7 +117,7 @@ void addBump(std::vector<Shadeop>& list) {
         addRayTest(list, "bump", sigs({{"point bump(string name; normal norm; vector dPds, vector dPdt; pairs)"}}),
                    "Displacement of the normal by a bump map, for N = normalize(bump(...) + N): the height in the first "
                    "channel of the texture "
-                   "is read at s, t (or at ss, tt) and beside them, and its slopes along dPds and dPdt tilt the normal.",
+                   "is read at s, t (or at ss, tt) and next to them, and its slopes along dPds and dPdt tilt the normal.",
                    "RISpec 3.0 (bump maps); the formula is ours", R"(
 point bump(string name; normal norm; vector dPds; vector dPdt; float ss; float tt; float blur; float width) {
     float d = 1 / 1024;

@@ -99,7 +99,7 @@ std::vector<OptionalParameter> subsurfaceParameters() {
          "where the surface is no half space"},
         {kC, "irradiance", false, "from the lights",
          "what enters at P, as diffuse() gives it; may be made of light that the shader gathers. Walks that come out here take "
-         "it, by a run of the shader that prints and bakes nothing; not where it must wait for rays (a warning tells)"},
+         "it, by a run of the shader that prints and bakes nothing; not where it must wait for rays (a warning says so)"},
         {kC, "scattering", false, "attribute subsurface:scattering", "coefficient, 1/mm"},
         {kC, "absorption", false, "attribute subsurface:absorption", "coefficient, 1/mm"},
         {kC, "meanfreepath", false, "attribute subsurface:meanfreepath", "with reflectance: 1 / (scattering + absorption), mm"},
@@ -253,7 +253,7 @@ void addSubsurface(std::vector<Shadeop>& list) {
         "absorbed. Light enters the closed surface (primitives of one group) evenly from all sides, is followed from event to "
         "event, and leaves evenly to all sides; where it enters it is what the shader there says by \"irradiance\", else that "
         "of lights and of diffuse rays, as diffuse() has it. What the boundary reflects outside is left to other lobes. It "
-        "begins at p, about n, which points out of the surface (not given: of the geometry): a p beside a surface of the "
+        "begins at p, about n, which points out of the surface (not given: of the geometry): a p near a surface of the "
         "group is put onto it along n, one inside of it stays there. The form that begins with the type is that of PRMan 16.");
     list.back().examples = {{"subsurface(P)", "0 0 0", "", kNothing}};
     std::erase_if(subsurface.optional, [](const OptionalParameter& p) { return p.name == "type" || p.name == "samples"; });

@@ -47,7 +47,7 @@ TEST_F(Installation, OfAPrefix) {
     EXPECT_EQ(shaders(), (prefix / "share/alpenglow/shaders").string());
 }
 
-// Modules lie beside the program, and share/alpenglow/shaders is a link to the sources.
+// Modules lie next to the program, and share/alpenglow/shaders is a link to the sources.
 TEST_F(Installation, OfABuildFolder) {
     make("bin/libtest.so");
     make("lib/alpenglow/libtest.so"); // of an older installation; not taken

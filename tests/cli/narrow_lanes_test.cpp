@@ -1,4 +1,4 @@
-// The runtime for 4 and 8 lanes is in files beside the program's modules: without them, and with those of another build, shaders
+// The runtime for 4 and 8 lanes is in files next to the program's modules: without them, and with those of another build, shaders
 // of so few lanes are refused with what to do. 16 lanes need no file.
 #include "command_folder.h"
 
@@ -17,7 +17,7 @@ protected:
         fs::copy_file(ALPENGLOW_PROGRAM, dir / "bin/alpenglow");
         take("libalpenglow_jit.so");
     }
-    /// Copies a file that lies beside the program.
+    /// Copies a file that lies next to the program.
     void take(const std::string& name) const {
         fs::copy_file(fs::path(ALPENGLOW_PROGRAM).parent_path() / name, dir / "bin" / name, fs::copy_options::overwrite_existing);
     }
@@ -36,7 +36,7 @@ TEST_F(NarrowLanes, FilesThatLackOrAreOfAnotherBuildAreNamed) {
         const std::string said = eval(lanes);
         EXPECT_NE(status, 0);
         EXPECT_NE(said.find("alpenglow_runtime" + std::to_string(lanes) +
-                            ".bc, which is neither beside the program nor in "
+                            ".bc, which is neither next to the program nor in "
                             "lib/alpenglow: build it by `ninja -C build/release narrow_lanes`, or leave out --lanes"),
                   said.npos)
             << said;

@@ -103,7 +103,8 @@ TEST_F(Program, HelpVersionAndWrongUse) {
     EXPECT_EQ(run("</dev/null").status, 2);
     EXPECT_EQ(run("render </dev/null").status, 2);
     EXPECT_EQ(run("probe s.rib 0,0,0").status, 2);
-    EXPECT_NE(read("err").find("probe: normal is required\nalpenglow help probe tells more."), std::string::npos) << read("err");
+    EXPECT_NE(read("err").find("probe: normal is required\nSee alpenglow help probe for more."), std::string::npos)
+        << read("err");
     EXPECT_EQ(run("render --no-such-option a.rib").status, 2);
     for (const char* bad : {"--format 64", "--format 0x4", "--crop 1,0,0,1", "--samples 4:2", "--pixel a,b", "--frames 3-1",
                             "--spp 0", "--lanes 5", "--hider zebra", "--display foo", "--resume", "--progress loud"}) {

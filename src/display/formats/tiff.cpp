@@ -389,7 +389,7 @@ void setMetadata(TIFF* f, const Image& m) {
     matrix(TIFFTAG_PIXAR_MATRIX_WORLDTOCAMERA, m.worldToCamera);
 }
 
-/// False after an error, which the library has told.
+/// False after an error, which the library has reported.
 bool writeRows(TIFF* f, const Image& m, const WriteOptions& o, unsigned bits) {
     const size_t n = m.channels.size();
     std::vector<uint8_t> row(n * size_t(m.width) * bits / 8);

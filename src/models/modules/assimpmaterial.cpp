@@ -58,7 +58,7 @@ void AssimpReader::images() {
     }
 }
 
-/// The picture of a name: beside the model or below, wherever the file says that it was.
+/// The picture of a name: in the model's folder or below, wherever the file says that it was.
 int AssimpReader::imageOf(const std::string& name) {
     if (const auto at = images_.find(name); at != images_.end()) return at->second;
     std::string slashes = name;
@@ -76,7 +76,7 @@ int AssimpReader::imageOf(const std::string& name) {
         break;
     }
     if (found == kNone)
-        error("picture \"" + name.substr(0, 200) + "\" is not beside the model or below; its materials do without");
+        error("picture \"" + name.substr(0, 200) + "\" is not in the model's folder or below; its materials do without");
     images_[name] = found;
     return found;
 }

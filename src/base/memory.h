@@ -4,6 +4,7 @@
 #include <new>
 #include <optional>
 #include <string>
+#include <vector>
 
 namespace alpenglow {
 
@@ -23,6 +24,9 @@ std::optional<size_t> parseMemorySize(const std::string&);
 
 /// "3.6 GiB", for messages.
 std::string memorySizeText(size_t bytes);
+
+/// Memory that a vector holds, in bytes, without what its elements hold.
+template <class T> size_t bytesOf(const std::vector<T>& v) { return v.capacity() * sizeof(T); }
 
 /// Default memory limit of a run: nine tenths of machineMemory(), to leave room for the system. 0: unlimited.
 size_t defaultMemoryLimit();

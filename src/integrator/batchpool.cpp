@@ -1,4 +1,5 @@
 #include "integrator/batchpool.h"
+#include "base/memory.h"
 #include "integrator/context.h"
 #include "integrator/raystore.h"
 #include "integrator/stageset.h"
@@ -17,6 +18,15 @@ std::shared_ptr<BatchContext> BatchPool::take() {
     auto c = std::move(pool_.back());
     pool_.pop_back();
     return c;
+}
+
+size_t BatchPool::bytes() const {
+    size_t sum = 0;
+    for (const auto& c : pool_)
+        sum += sizeof(BatchContext) + bytesOf(c->points) + bytesOf(c->rays) + bytesOf(c->bindings) + bytesOf(c->targets) +
+               bytesOf(c->hits) + bytesOf(c->surfaces) + bytesOf(c->shapes) + bytesOf(c->ways) + bytesOf(c->emits) +
+               bytesOf(c->arena) + bytesOf(c->flown);
+    return sum;
 }
 
 void BatchPool::giveBack(std::shared_ptr<BatchContext> c) {

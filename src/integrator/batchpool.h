@@ -15,6 +15,7 @@ public:
     void giveBack(std::shared_ptr<BatchContext>); ///< reused if no one else holds it
     /// Returns a batch whose points are shaded and releases its hold on their targets.
     void finish(std::shared_ptr<BatchContext>, Sched&);
+    size_t bytes() const; ///< memory of the batches that wait to be used again
 
 private:
     std::vector<std::shared_ptr<BatchContext>> pool_;

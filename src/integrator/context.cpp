@@ -36,6 +36,7 @@ void Counters::operator+=(const Counters& o) {
     interpolated += o.interpolated;
     depthMax = std::max(depthMax, o.depthMax);
     peakFrameBytes = std::max(peakFrameBytes, o.peakFrameBytes);
+    threadBytes = std::max(threadBytes, o.threadBytes);
 }
 
 uint64_t& Context::raysOf(RayType t) {

@@ -1,4 +1,5 @@
 #include "integrator/hitqueues.h"
+#include "base/memory.h"
 #include "integrator/context.h"
 #include "integrator/stageset.h"
 #include "integrator/waitingkernels.h"
@@ -61,6 +62,12 @@ std::vector<size_t> HitQueues::ready(bool all) const {
 }
 
 bool HitQueues::full() const { return waiting_ > kWaitingHits; }
+
+size_t HitQueues::bytes() const {
+    size_t sum = 0;
+    for (const Queue& q : queues_) sum += bytesOf(q.hits) + bytesOf(q.rays) + bytesOf(q.targets);
+    return sum;
+}
 
 size_t HitQueues::longest() const {
     return *std::max_element(groups_.begin(), groups_.end(),

@@ -23,6 +23,7 @@ public:
     bool empty() const { return groups_.empty(); }
     bool full() const;      ///< more hits are queued than fit into the cache of a core
     size_t longest() const; ///< the group with the most hits
+    size_t bytes() const;   ///< memory that it holds
 
 private:
     struct Queue {

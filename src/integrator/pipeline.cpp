@@ -35,6 +35,7 @@
 #include "integrator/surfacepoints.h"
 #include "integrator/surfaceshading.h"
 #include "integrator/transparency.h"
+#include "integrator/vertexblocks.h"
 #include "integrator/vertexlight.h"
 #include "integrator/waitingkernels.h"
 #include "shading/gridpoint.h"
@@ -179,6 +180,9 @@ void Pipeline::endTrace() {
     c.nonFinite += sched_->nonFinite();
     c.overLimit += sched_->overLimit();
     c.peakFrameBytes = std::max(c.peakFrameBytes, sched_->peakFrameBytes());
+    const Parts& p = *parts_;
+    c.threadBytes = std::max(c.threadBytes, sched_->bytes() + p.queues.bytes() + p.batches.bytes() +
+                                                p.vertexLight.stages().blocks.bytes() + p.shadows.bytes());
     forget();
 }
 

@@ -30,6 +30,7 @@ struct Counters {
     uint64_t records = 0, interpolated = 0; ///< irradiance records made, and lookups interpolated from them
     int depthMax = 0;
     size_t peakFrameBytes = 0; ///< largest size of suspended kernel frames at one time, over all threads
+    size_t threadBytes = 0;    ///< most memory of rays, points, columns and frames of one thread
     void operator+=(const Counters&);
 };
 

@@ -2,6 +2,7 @@
 // opacity-only kernel runs for all rays that hit it, wave by wave.
 #include "integrator/shadowrays.h"
 #include "base/exact.h"
+#include "base/memory.h"
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/context.h"
@@ -359,6 +360,10 @@ void ShadowRays::clear() {
     noted_.clear();
     queue.clear();
     more.clear();
+}
+
+size_t ShadowRays::bytes() const {
+    return bytesOf(queue) + bytesOf(more) + bytesOf(settled) + bytesOf(transmitted_) + bytesOf(rays_);
 }
 
 } // namespace alpenglow::integrator

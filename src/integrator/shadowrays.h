@@ -29,6 +29,7 @@ public:
     /// Traces the queue, adds the light, and empties the queue.
     void flush(Sched&);
     void clear();
+    size_t bytes() const; ///< memory of the queue
 
     /// Notes the light sample of the last ray of the queue for Context::seen, if it is not occluded.
     void note(const SeenSample& s) {

@@ -1,4 +1,5 @@
 #include "integrator/vertexblocks.h"
+#include "base/memory.h"
 #include "base/numberlanes.h"
 #include "integrator/lightpathstates.h"
 #include "integrator/raystore.h"
@@ -10,6 +11,13 @@ namespace alpenglow::integrator {
 
 VertexBlocks::VertexBlocks(const StageSet& s) : Stage(s.context), paths_(s.paths), store_(s.store), surfaces_(s.surfaces) {
     std::fill_n(whole, kBlock, 1.f);
+}
+
+size_t VertexBlocks::bytes() const {
+    size_t sum = sizeof(*this) + bytesOf(vertices) + bytesOf(rays) + bytesOf(lights) + bytesOf(queries) + bytesOf(asked) +
+                 bytesOf(values) + bytesOf(pairs) + bytesOf(choices) + bytesOf(sites);
+    for (const Site& s : sites) sum += bytesOf(s.lobes) + bytesOf(s.narrow) + bytesOf(s.options) + bytesOf(s.requests);
+    return sum;
 }
 
 VertexStage::VertexStage(const StageSet& s, const VertexStages& v) : Stage(s.context), v_(v.blocks), stages_(lanes::stages()) {}

@@ -47,6 +47,7 @@ struct VertexBlocks final : Stage {
     uint16_t pathOf(const Site&, bool delta, size_t point, const Vec3& w, const BatchContext&) const;
     /// Index of a point in LitSurfaces::values; -1: none.
     int litSurfaceAt(size_t point) const { return litSurface.empty() ? -1 : litSurface[point]; }
+    size_t bytes() const; ///< memory that the columns hold
     uint32_t numberOf(const BoundLight& l) const { return uint32_t(&l - world_.lights_.data()); }
 
     // By VertexLoading and the stages that read requests.

@@ -15,8 +15,8 @@ template <class A> void each(A& a, Diagnostic& d) {
 }
 template <class A> void each(A& a, RenderStats& s) {
     a(s.width, s.height, s.spp, s.sppLeast, s.sppMost, s.renderSec, s.cpuSec, s.totalRays, s.noise, s.curve, s.threads,
-      s.peakMemoryBytes, s.parseSec, s.compileSec, s.buildSec, s.nonFinite, s.saturated, s.rays, s.classic, s.shading, s.depth,
-      s.errors, s.warnings, s.lanesUsed, s.lanesRun, s.depthSum, s.paths);
+      s.peakMemoryBytes, s.threadBytes, s.parseSec, s.compileSec, s.buildSec, s.nonFinite, s.saturated, s.rays, s.classic,
+      s.shading, s.guide, s.lightGuide, s.depth, s.errors, s.warnings, s.lanesUsed, s.lanesRun, s.depthSum, s.paths);
 }
 template <class A> void each(A& a, FrameStats::Picture& p) { a(p.file, p.type, p.channels); }
 template <class A> void each(A& a, FrameStats::Texture& t) { a(t.file, t.fileBytes, t.memoryBytes, t.scratchBytes); }

@@ -45,6 +45,7 @@ void accumulate(RenderStats& all, const RenderStats& f) {
                         &RenderStats::LightGuide::used})
         all.lightGuide.*member += before.lightGuide.*member;
     all.depth.maximum = std::max(all.depth.maximum, before.depth.maximum);
+    all.threadBytes = std::max(all.threadBytes, before.threadBytes);
     all.errors += before.errors;
     all.warnings += before.warnings;
 }

@@ -460,6 +460,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.depthSum += double(c.depthSum);
     stats_.paths += double(c.paths);
     stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
+    stats_.threadBytes = std::max<uint64_t>(stats_.threadBytes, c.threadBytes);
     stats_.guide = {job.guide.photons, job.guide.cells, job.guide.lobes, c.guided, c.guidedLit, c.guidedLight};
     stats_.lightGuide = {job.lightGuide.samples, job.lightGuide.lights, job.lightGuide.cells, job.lightGuide.used};
     stats_.nonFinite += f.nonFinite;

@@ -119,6 +119,7 @@ integrator::Counters Job::counters() const {
         all.records += c.records;
         all.interpolated += c.interpolated;
         all.depthMax = std::max(all.depthMax, c.depthMax);
+        all.threadBytes = std::max(all.threadBytes, c.threadBytes);
     }
     return all;
 }

@@ -54,6 +54,7 @@ std::string toJson(const RenderStats& s) {
     j["curve"] = s.curve;
     j["threads"] = s.threads;
     j["peakMemoryBytes"] = s.peakMemoryBytes;
+    j["threadBytes"] = s.threadBytes;
     j["parseSec"] = finite(s.parseSec);
     j["compileSec"] = finite(s.compileSec);
     j["buildSec"] = finite(s.buildSec);
@@ -131,7 +132,8 @@ std::string toTable(const RenderStats& s) {
     if (s.noise.known)
         row("noise", fmt::format("{:.5f}: the mean relative error of the light on surfaces (docs/noise.md)", s.noise.noise));
     if (!s.curve.empty()) row("curve", s.curve);
-    row("memory", bytesText(s.peakMemoryBytes) + " at most");
+    row("memory", bytesText(s.peakMemoryBytes) + " at most" +
+                      (s.threadBytes ? "; of each thread's rays and points " + bytesText(s.threadBytes) : std::string()));
     if (s.nonFinite) row("dropped", fmt::format("{} samples that were not finite", grouped(s.nonFinite)));
     if (s.saturated) row("saturated", fmt::format("{} values beyond 2^60", grouped(s.saturated)));
     if (s.errors || s.warnings) row("messages", fmt::format("{} errors, {} warnings", s.errors, s.warnings));

@@ -18,6 +18,7 @@ struct RenderStats {
     std::string curve; ///< of the pictures (curve.h); "" = unknown
     int threads = 0;
     uint64_t peakMemoryBytes = 0;
+    uint64_t threadBytes = 0; ///< integrator::Counters::threadBytes
     double parseSec = 0, compileSec = 0, buildSec = 0;
     uint64_t nonFinite = 0;               ///< samples dropped
     uint64_t saturated = 0;               ///< values clamped by the exact sums

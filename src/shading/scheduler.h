@@ -203,6 +203,14 @@ public:
     size_t frameBytes() const { return frameBytes_; } ///< of waiting strips
     size_t frameLimit() const { return frameLimit_; }
     size_t peakFrameBytes() const { return peakFrameBytes_; }
+    /// Memory that tasks and targets hold, and the most that frames of waiting strips have held since restart().
+    size_t bytes() const {
+        size_t sum = targets_.capacity() * sizeof(Target) + open_.capacity() * sizeof(Open) + peakFrameBytes_;
+        for (const std::vector<Tasks>& chunks : queues_)
+            for (const Tasks& t : chunks) sum += t.bytes();
+        for (const Tasks& t : freeChunks_) sum += t.bytes();
+        return sum;
+    }
     size_t largestSlice() const { return largestSlice_; }
     uint64_t suspensions() const { return suspensions_; }
     uint64_t overLimit() const { return overLimit_; }

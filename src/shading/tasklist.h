@@ -18,6 +18,7 @@ template <class Task> class TaskList {
 public:
     size_t size() const { return size_; }
     bool empty() const { return size_ == 0; }
+    size_t bytes() const { return capacity_ * sizeof(Task); } ///< memory that it holds
     Task* data() { return tasks_.get(); }
     const Task* data() const { return tasks_.get(); }
     Task* end() { return tasks_.get() + size_; }

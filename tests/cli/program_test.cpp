@@ -182,10 +182,10 @@ TEST_F(Program, StatsHaveTheFixedKeys) {
     write("r.rib", kRoom);
     ASSERT_EQ(run("render -q --spp 16 -o a.exr --stats s.json r.rib").status, 0) << read("err");
     auto j = nlohmann::json::parse(read("s.json"));
-    for (const char* key :
-         {"width",       "height",   "spp",         "renderSec",  "cpuSec",   "raysPerMS", "noiseRSE",        "noise",
-          "noiseAtMost", "coverage", "noiseRSE999", "efficiency", "noiseQMC", "threads",   "peakMemoryBytes", "parseSec",
-          "compileSec",  "buildSec", "nonFinite",   "rays",       "shading",  "depth",     "errors",          "warnings"})
+    for (const char* key : {"width",           "height",      "spp",      "renderSec",   "cpuSec",     "raysPerMS", "noiseRSE",
+                            "noise",           "noiseAtMost", "coverage", "noiseRSE999", "efficiency", "noiseQMC",  "threads",
+                            "peakMemoryBytes", "threadBytes", "parseSec", "compileSec",  "buildSec",   "nonFinite", "rays",
+                            "shading",         "depth",       "errors",   "warnings"})
         EXPECT_TRUE(j.contains(key)) << key;
     for (const char* key : {"camera", "diffuse", "specular", "transmission", "shadow"})
         EXPECT_TRUE(j["rays"].contains(key)) << key;

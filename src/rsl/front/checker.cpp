@@ -121,7 +121,10 @@ const Unit& Checker::rslUnit(const Shadeop& op) {
     auto& unit = rslUnits_[&op];
     if (!unit) {
         const int file = sources_.add("<" + op.name + ">", op.rsl);
-        unit = std::make_unique<Unit>(Parser(preprocess(sources_, file, {}), sources_).parse());
+        const Preprocessed text = preprocess(sources_, file, {});
+        Parser parser(sources_);
+        parser.read(text);
+        unit = std::make_unique<Unit>(std::move(parser.unit()));
     }
     return *unit;
 }

@@ -5,8 +5,8 @@
 #include "rsl/front/colournames.h"
 #include "rsl/front/headers.h"
 #include "rsl/front/inspect.h"
+#include "rsl/front/library.h"
 #include "rsl/front/lint.h"
-#include "rsl/front/prelude.h"
 #include "rsl/messages/messages.h"
 #include <algorithm>
 
@@ -67,28 +67,17 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
     hashComments(sources, p);
     readBorrowedWords(sources, p);
-    addSampledLights(sources, p);
-    addDirectLighting(sources, p);
-    addPrelude(sources, p);
-    Unit unit = Parser(p, sources).parse();
+    Parser parser(sources);
+    Library library(sources, parser);
+    library.readNamed(p.tokens);
+    parser.read(p);
+    Unit& unit = parser.unit();
+    addLightMethods(unit, library);
+    addLightingMethods(unit, library, sources);
     for (const StructType& s : unit.structs) program->structs.push_back(summary(s, unit));
     lowerStructs(unit, sources);
     expandClasses(unit, sources);
     if (unit.shaders.empty() && unit.functions.empty() && sources.errors() == 0) sources.report({main, 1, 1}, msg::kNoShader);
-    // Annotations belong to the shader they stand in or before; those at the end to the last one.
-    const auto before = [](const Place& a, const Place& b) { return std::tie(a.line, a.column) < std::tie(b.line, b.column); };
-    for (const Annotation& a : p.annotations) {
-        Shader* owner = nullptr;
-        const Place at = p.tokens[std::min(a.token, p.tokens.size() - 1)].place;
-        for (auto& s : unit.shaders)
-            if (!owner || (!before(at, s->place) && a.token + 1 < p.tokens.size())) owner = s.get();
-        if (a.token + 1 >= p.tokens.size() && !unit.shaders.empty()) owner = unit.shaders.back().get();
-        if (!owner) continue;
-        const Place place = owner->place; // a class is there once for each kind of shader it can be
-        for (auto& s : unit.shaders)
-            if (s->place.file == place.file && s->place.line == place.line && s->place.column == place.column)
-                s->annotations.emplace_back(a.key, a.value);
-    }
     findPlugins(unit, options, name, sources, *program);
     Checker checker(sources, unit, *program);
     checker.run();

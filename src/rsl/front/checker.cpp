@@ -111,7 +111,10 @@ void Checker::checkBody(Function& f) {
     }
     check(f.body);
     scopes_.pop_back();
-    if (f.result.base != Base::Void && !endsInReturn(*f.body)) sources_.report(f.place, msg::kReturnMissing(f.name));
+    const bool gives = f.result.base != Base::Void || std::ranges::any_of(f.parameters, [](const Symbol* p) {
+                           return p->whole.self && p->name.starts_with("(result)"); // a structure
+                       });
+    if (gives && !endsInReturn(*f.body)) sources_.report(f.place, msg::kReturnMissing(f.name));
     if (varyingFunctions_.count(&f) && outer) varyingFunctions_.insert(outer);
     function_ = outer;
     loops_ = loops;

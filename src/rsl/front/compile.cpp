@@ -42,13 +42,11 @@ StructSummary summary(const StructType& s, const Unit& unit) {
     r.place = s.place;
     for (const StructMember& m : s.members) {
         std::string type = toString(m.type.element());
-        if (isStruct(m.type)) {
-            const size_t index = size_t(int(m.type.base) - kFirstStruct);
-            type = index < unit.structs.size() ? unit.structs[index].name : "struct";
-        }
+        const size_t index = isStruct(m.type) ? size_t(int(m.type.base) - kFirstStruct) : unit.structs.size();
+        if (isStruct(m.type)) { type = index < unit.structs.size() ? unit.structs[index].name : "struct"; }
         if (m.storage != Storage::Unspecified) type.insert(0, m.storage == Storage::Uniform ? "uniform " : "varying ");
         if (m.type.array) type += m.type.array > 0 ? "[" + std::to_string(m.type.array) + "]" : "[]";
-        r.members.push_back({std::move(type), m.name, m.place});
+        r.members.push_back({std::move(type), m.name, m.place, index < unit.structs.size() ? int(index) : -1});
     }
     for (const auto& f : s.methods) r.methods.push_back({"", f->name, f->place});
     return r;

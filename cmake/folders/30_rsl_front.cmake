@@ -18,4 +18,27 @@ static constexpr ShippedHeader kHeaders[] = {
 std::span<const ShippedHeader> shippedHeaders() { return kHeaders; }
 } // namespace alpenglow::rsl::front
 ]])
-target_sources(rsl_front PRIVATE ${CMAKE_BINARY_DIR}/generated/shipped_headers.cpp)
+
+# So does the RSL that shaders get from the program itself: library/FOLDER/NAME.sl defines NAME.
+set(library_table "")
+foreach(folder functions:Function structures:Structure classes:Class)
+  string(REGEX REPLACE ".*:" "" library_kind ${folder})
+  string(REGEX REPLACE ":.*" "" library_folder ${folder})
+  file(GLOB library_files CONFIGURE_DEPENDS ${CMAKE_SOURCE_DIR}/src/rsl/library/${library_folder}/*.sl)
+  set_property(DIRECTORY APPEND PROPERTY CMAKE_CONFIGURE_DEPENDS ${library_files})
+  foreach(f ${library_files})
+    get_filename_component(library_name ${f} NAME_WE)
+    file(READ ${f} library_text)
+    string(APPEND library_table
+      "    {LibraryText::Kind::${library_kind}, \"${library_name}\", R\"__rsl__(${library_text})__rsl__\"},\n")
+  endforeach()
+endforeach()
+file(CONFIGURE OUTPUT ${CMAKE_BINARY_DIR}/generated/rsl_library.cpp @ONLY CONTENT [[// Generated from src/rsl/library.
+#include "rsl/front/library.h"
+namespace alpenglow::rsl::front {
+static constexpr LibraryText kTexts[] = {
+@library_table@};
+std::span<const LibraryText> libraryTexts() { return kTexts; }
+} // namespace alpenglow::rsl::front
+]])
+target_sources(rsl_front PRIVATE ${CMAKE_BINARY_DIR}/generated/shipped_headers.cpp ${CMAKE_BINARY_DIR}/generated/rsl_library.cpp)

@@ -91,6 +91,22 @@ const rsl::StructSummary* Document::structure(const std::string& name) const {
     return nullptr;
 }
 
+/// The structure that `name`, a variable or a chain of members of one, is; null if it is none.
+const rsl::StructSummary* Document::structureOf(const std::string& name, const rsl::StructVariable* variable) const {
+    const auto numbered = [&](int n) {
+        return n >= 0 && size_t(n) < program_->structs.size() ? &program_->structs[size_t(n)] : nullptr;
+    };
+    if (!variable) return nullptr;
+    const rsl::StructSummary* s = numbered(variable->structure);
+    for (size_t at = variable->name.size(); s && at < name.size();) {
+        const size_t begin = at + 2, end = std::min(name.find("->", begin), name.size());
+        const auto m = std::ranges::find(s->members, name.substr(begin, end - begin), &rsl::StructSummary::Member::name);
+        s = m == s->members.end() ? nullptr : numbered(m->structure);
+        at = end;
+    }
+    return s;
+}
+
 std::vector<Document::Member> Document::members(const Receiver& r, size_t position) const {
     std::vector<Member> list;
     if (!program_) return list;
@@ -120,10 +136,12 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
     // Structures are one variable for each of their members.
     const std::string head = r.name + "->";
     bool handle = false;
+    const rsl::StructVariable* variable = nullptr;
     const auto look = [&](const std::vector<std::unique_ptr<rsl::Symbol>>& symbols) {
         for (const auto& s : symbols) {
             handle |= s->type.base == rsl::Base::Shader && s->name == r.name;
             if (s->name.compare(0, head.size(), head) != 0) continue;
+            if (!variable) variable = s->of.get();
             const std::string rest = s->name.substr(head.size());
             const size_t deeper = rest.find("->");
             rsl::Symbol member = *s;
@@ -139,19 +157,11 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
         for (const auto& s : program_->shaders) look(s->symbols);
         for (const auto& f : program_->functions) look(f->symbols);
     }
-    // Of which structure they are: the one with just these members, whose methods follow.
-    for (const auto& s : program_->structs) {
-        const bool same = !list.empty() && s.members.size() == list.size() &&
-                          std::equal(list.begin(), list.end(), s.members.begin(),
-                                     [](const Member& m, const auto& of) { return m.name == of.name; });
-        if (!same) continue;
-        for (size_t i = 0; i < list.size(); ++i) {
-            list[i].of = s.name;
-            list[i].detail = s.members[i].type + " " + s.members[i].name;
-            list[i].place = s.members[i].place;
-        }
-        for (const auto& m : s.methods) add({m.name, m.name + "()", s.name, m.place, true});
-        break;
+    // As the structure declares them, with its methods.
+    if (const rsl::StructSummary* s = structureOf(r.name, variable)) {
+        list.clear(), seen.clear();
+        for (const auto& m : s->members) add({m.name, m.type + " " + m.name, s->name, m.place, false});
+        for (const auto& m : s->methods) add({m.name, m.name + "()", s->name, m.place, true});
     }
     // Which shader stands behind a handle, a scene decides: the classes of this text are offered.
     if (handle && r.arrow)

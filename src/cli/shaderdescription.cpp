@@ -227,7 +227,7 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
     d.plugins = shader->program().plugins;
     d.structs = shader->program().structs;
     const rsl::Program& program = shader->program();
-    // What a pass of the compiler adds stands in a file of its own, "<generateSamples>": users neither set nor call it.
+    // What the compiler's library adds stands in a file of its own, "<sampledlight>": users neither set nor call it.
     const auto added = [&](const rsl::Place& place) {
         return place.file >= 0 && size_t(place.file) < program.files.size() && program.files[size_t(place.file)].starts_with("<");
     };
@@ -272,7 +272,7 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
         if (!s.object || !other->body) continue;
         for (const auto& b : other->body->body)
             for (const auto& v : b->declarators)
-                if (v.symbol && v.symbol->name[0] != '(' && v.symbol->type.base != rsl::Base::Void &&
+                if (v.symbol && !added(v.symbol->place) && v.symbol->name[0] != '(' && v.symbol->type.base != rsl::Base::Void &&
                     members.insert(v.symbol->name).second)
                     d.members.push_back({typeText(v.symbol->type, v.symbol), v.symbol->name, storageText(v.symbol->storage),
                                          other->publics.count(v.symbol->name.substr(0, v.symbol->name.find("->"))) > 0,

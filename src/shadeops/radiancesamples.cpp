@@ -1,5 +1,5 @@
 // Shadeops of the shader objects of PRMan 16 and 17: samples of lights and materials, and what asks for them. Those about samples
-// take an array of the structure __radiancesample (rsl/front/prelude.cpp), which is its members by the time they are called.
+// take an array of the structure __radiancesample (rsl/library/structures), which is its members by the time they are called.
 #include "shadeops/describe.h"
 
 namespace alpenglow::rsl {
@@ -208,7 +208,7 @@ void areashadow(uniform string map; vector region; SAMPLES; float raytrace; floa
 }
 
 /// directlighting() and its kin of another shader object than `this`, whose calls become methods of the class
-/// (rsl/front/directlighting.cpp).
+/// (rsl/front/classlighting.cpp).
 std::string lightingText() {
     std::string all = R"(
 color __asked(shader handle; uniform string which; vector w; float far; color light) {

@@ -39,6 +39,13 @@ struct Whole {
     bool self = false;  ///< what a method is called for, or the result of a function: neither is an argument
 };
 
+/// A variable whose type is a structure. Behind the pass that takes structures apart each of its plain members is a Symbol.
+struct StructVariable {
+    std::string name;
+    int structure = -1; ///< by its number in Program::structs
+    int array = 0;      ///< as Type::array
+};
+
 /// A variable of any origin. Address identity: two uses of one variable share the Symbol.
 struct Symbol {
     enum class Origin : uint8_t { Local, ShaderParameter, FunctionParameter, Global };
@@ -54,7 +61,8 @@ struct Symbol {
     bool resizable = false; ///< `float x[]`, local or a parameter of a function: its length may change
     bool isExtern = false;  ///< only between parser and checker, which puts the outer variable in its place
     Place place;
-    Whole whole{}; ///< of a parameter of a function
+    Whole whole{};                              ///< of a parameter of a function
+    std::shared_ptr<const StructVariable> of{}; ///< the variable of which this is a member; its members share it
 };
 
 enum class ExprKind : uint8_t {
@@ -122,6 +130,7 @@ struct Expr {
     Place place;
     bool handle = false; ///< String: a handle, no text: null (empty), or what RSL has names for, "(this)", "(light)"
     Whole whole{};       ///< of an argument
+    bool part = false;   ///< Variable: one of several that stand where the shader names a structure as a whole
     int height = 1;      ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
     double number = 0;
     std::string text; ///< String; callee name before binding
@@ -199,6 +208,7 @@ struct StructSummary {
     struct Member {
         std::string type, name;
         Place place;
+        int structure = -1; ///< the type's number in Program::structs, if it is a structure or an array of them
     }; ///< methods have no type
     std::string name;
     std::vector<Member> members;

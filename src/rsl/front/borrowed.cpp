@@ -18,24 +18,25 @@ bool isType(const Token& t) {
 
 void hashComments(SourceSet& sources, Preprocessed& p) {
     std::vector<Token> kept;
-    std::vector<size_t> dropped; // how many, up to each token
+    size_t next = 0; // annotation; they are in the order of the text
+    const auto passed = [&](size_t token) {
+        for (; next < p.annotations.size() && p.annotations[next].token <= token; ++next) p.annotations[next].token = kept.size();
+    };
     for (size_t i = 0; i < p.tokens.size();) {
         const Token& t = p.tokens[i];
         const bool two = t.text == "##" && t.kind != Tok::String; // of macros it is gone by now
         const bool hash = two || (t.text == "#" && !t.lineStart && t.kind != Tok::String && t.kind != Tok::End);
+        passed(i);
         if (!hash) {
-            dropped.push_back(i - kept.size());
             kept.push_back(p.tokens[i++]);
             continue;
         }
         sources.report(t.place, two ? Raised(msg::kTwoHashComment) : Raised(msg::kHashComment));
         const Place line = t.place;
-        for (; i < p.tokens.size() && p.tokens[i].kind != Tok::End && p.tokens[i].place.file == line.file &&
-               p.tokens[i].place.line == line.line;
-             ++i)
-            dropped.push_back(i - kept.size());
+        while (i < p.tokens.size() && p.tokens[i].kind != Tok::End && p.tokens[i].place.file == line.file &&
+               p.tokens[i].place.line == line.line)
+            ++i;
     }
-    for (Annotation& a : p.annotations) a.token -= a.token < dropped.size() ? dropped[a.token] : 0;
     p.tokens = std::move(kept);
 }
 
@@ -62,6 +63,28 @@ void readBorrowedWords(SourceSet& sources, Preprocessed& p) {
             t.text = "float";
         }
     }
+}
+
+void readLitPoints(Preprocessed& p) {
+    std::vector<Token>& t = p.tokens;
+    for (size_t i = 0; i + 2 < t.size(); ++i) {
+        if (!t[i].is("light") || t[i + 1].kind != Tok::Identifier || !t[i + 2].is("(")) continue;
+        const size_t body = behind(t, i + 2);
+        if (body >= t.size() || !t[body].is("{")) continue;
+        const size_t end = behind(t, body);
+        for (size_t k = i + 3; k < end; ++k)
+            if (t[k].kind == Tok::Identifier && t[k].text == "P" && !t[k - 1].is("->")) t[k].text = "Ps";
+        i = end - 1;
+    }
+}
+
+size_t behind(const std::vector<Token>& t, size_t open) {
+    int depth = 0;
+    for (size_t i = open; i < t.size(); ++i) {
+        if (t[i].is("(") || t[i].is("{") || t[i].is("[")) ++depth;
+        if ((t[i].is(")") || t[i].is("}") || t[i].is("]")) && --depth == 0) return i + 1;
+    }
+    return t.size();
 }
 
 } // namespace alpenglow::rsl::front

@@ -11,4 +11,10 @@ void hashComments(SourceSet&, Preprocessed&);
 /// the text gives them another meaning. Numbers are not rounded.
 void readBorrowedWords(SourceSet&, Preprocessed&);
 
+/// Gives light shaders Ps for P (dialectLitPoint()).
+void readLitPoints(Preprocessed&);
+
+/// Behind the bracket that closes the one at `open`; the end of the text if there is none.
+size_t behind(const std::vector<Token>&, size_t open);
+
 } // namespace alpenglow::rsl::front

@@ -95,6 +95,7 @@ bool sameForAll(const Expr& e, Known& known) {
 
 void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (s.storage != Storage::Uniform || !value.varying || isStringLike(s.type.base)) return;
+    if (value.kind == ExprKind::Variable && !value.symbol) return; // in the place of an error
     const Expr& whole = value.kind == ExprKind::Index ? *value.args[0] : value;
     if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method)
         return; // what a handle gives is of the class that is wanted

@@ -111,7 +111,10 @@ void Checker::checkBody(Function& f) {
     }
     check(f.body);
     scopes_.pop_back();
-    if (f.result.base != Base::Void && !endsInReturn(*f.body)) sources_.report(f.place, msg::kReturnMissing(f.name));
+    const bool gives = f.result.base != Base::Void || std::ranges::any_of(f.parameters, [](const Symbol* p) {
+                           return p->whole.self && p->name.starts_with("(result)"); // a structure
+                       });
+    if (gives && !endsInReturn(*f.body)) sources_.report(f.place, msg::kReturnMissing(f.name));
     if (varyingFunctions_.count(&f) && outer) varyingFunctions_.insert(outer);
     function_ = outer;
     loops_ = loops;
@@ -121,7 +124,10 @@ const Unit& Checker::rslUnit(const Shadeop& op) {
     auto& unit = rslUnits_[&op];
     if (!unit) {
         const int file = sources_.add("<" + op.name + ">", op.rsl);
-        unit = std::make_unique<Unit>(Parser(preprocess(sources_, file, {}), sources_).parse());
+        const Preprocessed text = preprocess(sources_, file, {});
+        Parser parser(sources_);
+        parser.read(text);
+        unit = std::make_unique<Unit>(std::move(parser.unit()));
     }
     return *unit;
 }

@@ -20,6 +20,7 @@ struct Cloner {
         c->handle = e.handle;
         c->place = e.place;
         c->whole = e.whole;
+        c->part = e.part;
         c->height = e.height;
         c->number = e.number;
         c->text = !rename.first.empty() && e.text == rename.first ? rename.second : e.text;

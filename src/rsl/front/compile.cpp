@@ -5,8 +5,8 @@
 #include "rsl/front/colournames.h"
 #include "rsl/front/headers.h"
 #include "rsl/front/inspect.h"
+#include "rsl/front/library.h"
 #include "rsl/front/lint.h"
-#include "rsl/front/prelude.h"
 #include "rsl/messages/messages.h"
 #include <algorithm>
 
@@ -42,13 +42,11 @@ StructSummary summary(const StructType& s, const Unit& unit) {
     r.place = s.place;
     for (const StructMember& m : s.members) {
         std::string type = toString(m.type.element());
-        if (isStruct(m.type)) {
-            const size_t index = size_t(int(m.type.base) - kFirstStruct);
-            type = index < unit.structs.size() ? unit.structs[index].name : "struct";
-        }
+        const size_t index = isStruct(m.type) ? size_t(int(m.type.base) - kFirstStruct) : unit.structs.size();
+        if (isStruct(m.type)) { type = index < unit.structs.size() ? unit.structs[index].name : "struct"; }
         if (m.storage != Storage::Unspecified) type.insert(0, m.storage == Storage::Uniform ? "uniform " : "varying ");
         if (m.type.array) type += m.type.array > 0 ? "[" + std::to_string(m.type.array) + "]" : "[]";
-        r.members.push_back({std::move(type), m.name, m.place});
+        r.members.push_back({std::move(type), m.name, m.place, index < unit.structs.size() ? int(index) : -1});
     }
     for (const auto& f : s.methods) r.methods.push_back({"", f->name, f->place});
     return r;
@@ -67,28 +65,17 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     program->dependencies.insert(program->dependencies.end(), p.dependencies.begin(), p.dependencies.end());
     hashComments(sources, p);
     readBorrowedWords(sources, p);
-    addSampledLights(sources, p);
-    addDirectLighting(sources, p);
-    addPrelude(sources, p);
-    Unit unit = Parser(p, sources).parse();
+    Parser parser(sources);
+    Library library(sources, parser);
+    library.readNamed(p.tokens);
+    parser.read(p);
+    Unit& unit = parser.unit();
+    addLightMethods(unit, library);
+    addLightingMethods(unit, library, sources);
     for (const StructType& s : unit.structs) program->structs.push_back(summary(s, unit));
     lowerStructs(unit, sources);
     expandClasses(unit, sources);
     if (unit.shaders.empty() && unit.functions.empty() && sources.errors() == 0) sources.report({main, 1, 1}, msg::kNoShader);
-    // Annotations belong to the shader they stand in or before; those at the end to the last one.
-    const auto before = [](const Place& a, const Place& b) { return std::tie(a.line, a.column) < std::tie(b.line, b.column); };
-    for (const Annotation& a : p.annotations) {
-        Shader* owner = nullptr;
-        const Place at = p.tokens[std::min(a.token, p.tokens.size() - 1)].place;
-        for (auto& s : unit.shaders)
-            if (!owner || (!before(at, s->place) && a.token + 1 < p.tokens.size())) owner = s.get();
-        if (a.token + 1 >= p.tokens.size() && !unit.shaders.empty()) owner = unit.shaders.back().get();
-        if (!owner) continue;
-        const Place place = owner->place; // a class is there once for each kind of shader it can be
-        for (auto& s : unit.shaders)
-            if (s->place.file == place.file && s->place.line == place.line && s->place.column == place.column)
-                s->annotations.emplace_back(a.key, a.value);
-    }
     findPlugins(unit, options, name, sources, *program);
     Checker checker(sources, unit, *program);
     checker.run();

@@ -108,6 +108,13 @@ private:
         unlit(at->second, e.place, ", in '" + e.function->name + "'");
     }
 
+    /// Whether a member of the structure has a value on some way to here.
+    bool anyMember(const StructVariable& v) const {
+        const auto at = members_.find(&v);
+        return at != members_.end() &&
+               std::ranges::any_of(at->second, [&](size_t n) { return now_.always.has(n) || now_.sometimes.has(n); });
+    }
+
     void read(const Expr& e) {
         const Symbol* s = e.symbol;
         unlit(s, e.place, "");
@@ -117,7 +124,12 @@ private:
             return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
         const char* value = !isStringLike(s->type.base) ? "zero" : s->type.base == Base::Shader ? "null" : "empty";
-        sources_.report(e.place, maybe ? msg::kMaybeUninitialised(s->name, value) : msg::kUninitialised(s->name, value));
+        std::string name = s->name;
+        if (e.part && s->of && !anyMember(*s->of)) { // one message for the structure
+            name = s->of->name;
+            value = "zero";
+        }
+        sources_.report(e.place, maybe ? msg::kMaybeUninitialised(name, value) : msg::kUninitialised(name, value));
     }
 
     /// What stands left of an assignment, or is put out: its indices are read, itself it is written.
@@ -253,6 +265,7 @@ private:
                 const bool open = d.symbol->resizable || d.symbol->type.array < 0;
                 if (!d.init && !open && d.symbol->type.base != Base::Void && !ignored_.count(d.symbol)) {
                     const size_t n = tracked_.emplace(d.symbol, tracked_.size()).first->second;
+                    if (d.symbol->of) members_[d.symbol->of.get()].push_back(n);
                     now_.always.erase(n);
                     if (loops_ == 0) now_.sometimes.erase(n);
                 }
@@ -310,6 +323,7 @@ private:
     const Symbol** found_ = nullptr;   ///< of a function that is searched: the only result, nothing is reported
     std::set<const Symbol*> assigned_; ///< by the statements so far
     std::unordered_map<const Symbol*, size_t> tracked_;
+    std::unordered_map<const StructVariable*, std::vector<size_t>> members_; ///< those in tracked_
     std::set<const Symbol*> told_;
     std::unordered_map<const Symbol*, int> under_;
     State now_;
@@ -346,10 +360,11 @@ void lint(const Program& program, const std::vector<Token>& tokens, const std::u
     const std::string& main = sources.name(0);
     const auto ours = [&](const Place& p) { return p.file >= 0 && p.line > 0 && sources.name(p.file) == main; };
     const auto unused = [&](const Symbol& s, bool parameter) {
-        if (skipped.count(s.name) || usedPlaces.count({s.place.file, s.place.line, s.place.column}) || !ours(s.place) ||
-            s.type.base == Base::Void || s.isExtern || s.name.rfind("__", 0) == 0 || s.name.rfind("this->", 0) == 0)
+        const std::string& name = s.of ? s.of->name : s.name; // the members of a structure have one place, so one message
+        if (name.starts_with('(') || skipped.count(name) || usedPlaces.count({s.place.file, s.place.line, s.place.column}) ||
+            !ours(s.place) || s.type.base == Base::Void || s.isExtern || name.starts_with("__") || name == "this")
             return;
-        sources.report(s.place, parameter ? msg::kUnusedParameter(s.name) : msg::kUnusedVariable(s.name));
+        sources.report(s.place, parameter ? msg::kUnusedParameter(name) : msg::kUnusedVariable(name));
     };
     lintCommas(tokens, sources);
     Flow::LightReads reads;

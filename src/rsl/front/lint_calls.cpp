@@ -144,7 +144,7 @@ void pattern(const Expr& e, SourceSet& sources) {
                        : c == 'p' ? "points, vectors and normals"
                                   : "colours")
                     : (b == Base::Float || b == Base::Bool || triple ? nullptr : "floats"); // a triple shows its parts
-            if (wants) sources.report(v.place, msg::kFormatKind(c, wants, toString(v.type)));
+            if (wants && v.type.base != Base::Void) sources.report(v.place, msg::kFormatKind(c, wants, toString(v.type)));
         } else {
             sources.report(e.args[0]->place, c ? msg::kFormatConversion(c) : Raised(msg::kFormatEnd));
         }

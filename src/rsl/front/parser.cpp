@@ -1,5 +1,6 @@
 #include "rsl/front/parser.h"
 #include "base/limits.h"
+#include <tuple>
 #include <utility>
 
 namespace alpenglow::rsl::front {
@@ -30,7 +31,7 @@ std::optional<ShaderKind> shaderKindNamed(std::string_view s) {
 
 const Token& Parser::take() {
     const Token& t = peek();
-    if (at_ + 1 < tokens_.size()) ++at_;
+    if (at_ + 1 < tokens_->size()) ++at_;
     return t;
 }
 
@@ -48,7 +49,7 @@ std::string Parser::shown() const {
 
 Place Parser::endOfLast() const {
     if (at_ == 0) return peek().place;
-    const Token& last = tokens_[at_ - 1];
+    const Token& last = (*tokens_)[at_ - 1];
     return {last.place.file, last.place.line, last.place.column + int(last.text.size())};
 }
 
@@ -113,8 +114,8 @@ void Parser::recover() {
 }
 
 void Parser::skippedFrom(size_t begin) {
-    for (size_t n = begin; n < at_ && n < tokens_.size(); ++n)
-        if (tokens_[n].kind == Tok::Identifier) unit_.skipped.emplace(tokens_[n].text);
+    for (size_t n = begin; n < at_ && n < tokens_->size(); ++n)
+        if ((*tokens_)[n].kind == Tok::Identifier) unit_.skipped.emplace((*tokens_)[n].text);
 }
 
 Parser::Depth::Depth(Parser& p) : parser(p) {
@@ -124,7 +125,7 @@ Parser::Depth::Depth(Parser& p) : parser(p) {
     p.tooDeep_ = true;
     p.unit_.incomplete = true;
     const Place at = p.peek().place;
-    p.at_ = p.tokens_.size() - 1; // no use in reading on
+    p.at_ = p.tokens_->size() - 1; // no use in reading on
     if (first) p.sources_.report(at, msg::kTooDeep(limits::kExpressionDepth));
     p.lastError_ = p.at_;
     throw SyntaxError{};
@@ -166,7 +167,12 @@ Base Parser::takeBase() {
 
 // ---- declarations
 
-Unit Parser::parse() {
+void Parser::read(const Preprocessed& text) {
+    tokens_ = &text.tokens;
+    annotations_ = text.annotations;
+    at_ = 0;
+    lastError_ = size_t(-1);
+    unit_.incomplete |= text.incomplete;
     while (peek().kind != Tok::End && !sources_.tooMany()) {
         const size_t before = at_;
         try {
@@ -187,7 +193,25 @@ Unit Parser::parse() {
         }
         if (at_ == before) take();
     }
-    return std::move(unit_);
+    // Those behind the last shader are its own.
+    if (annotations_.empty()) return;
+    if (Shader* s = lastShader()) takeAnnotations(*s);
+}
+
+/// The shader or class that stands last in the texts so far; null if there is none.
+Shader* Parser::lastShader() {
+    const auto later = [](const Place& a, const Place& b) { return std::tie(a.line, a.column) > std::tie(b.line, b.column); };
+    Shader* last = unit_.shaders.empty() ? nullptr : unit_.shaders.back().get();
+    Shader* object = unit_.classes.empty() ? nullptr : unit_.classes.back().shader.get();
+    return !last || (object && later(object->place, last->place)) ? object : last;
+}
+
+/// At the end of a shader: the annotations that stand in it, or before it and behind the one before, are its own.
+void Parser::takeAnnotations(Shader& s) {
+    while (!annotations_.empty() && (annotations_.front().token < at_ || peek().kind == Tok::End)) {
+        s.annotations.emplace_back(annotations_.front().key, annotations_.front().value);
+        annotations_ = annotations_.subspan(1);
+    }
 }
 
 bool Parser::notYet(Place p, const char* what) {
@@ -267,6 +291,7 @@ void Parser::shader(ShaderKind kind) {
     s->body = block();
     owner_ = {};
     typeWords_.clear();
+    takeAnnotations(*s);
     unit_.shaders.push_back(std::move(s));
 }
 

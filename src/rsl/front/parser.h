@@ -3,6 +3,7 @@
 #include "rsl/front/preprocessor.h"
 #include "rsl/front/structs.h"
 #include <functional>
+#include <span>
 #include <unordered_set>
 
 namespace alpenglow::rsl::front {
@@ -38,9 +39,12 @@ struct Unit {
 
 class Parser {
 public:
-    Parser(const Preprocessed& p, SourceSet& s) : tokens_(p.tokens), sources_(s) { unit_.incomplete = p.incomplete; }
-    /// Never fails: errors are in the set, and what could be read is in the unit.
-    Unit parse();
+    explicit Parser(SourceSet& s) : sources_(s) {}
+    /// Reads one more text into the unit; it sees the structures of those before. Never fails: errors are in the set, and what
+    /// could be read is in the unit.
+    void read(const Preprocessed&);
+    /// What the texts so far declare.
+    Unit& unit() { return unit_; }
 
 private:
     struct SyntaxError {};
@@ -55,7 +59,7 @@ private:
     };
 
     // tokens
-    const Token& peek(size_t k = 0) const { return tokens_[std::min(at_ + k, tokens_.size() - 1)]; }
+    const Token& peek(size_t k = 0) const { return (*tokens_)[std::min(at_ + k, tokens_->size() - 1)]; }
     const Token& take();
     bool at(std::string_view s) const { return peek().is(s); }
     bool accept(std::string_view s);
@@ -80,6 +84,8 @@ private:
 
     // declarations (parser.cpp)
     void topLevel();
+    void takeAnnotations(Shader&);
+    Shader* lastShader();
     void shader(ShaderKind);
     bool plugin(); ///< at `plugin "name"`, allowed at file level and in place of a statement
     void extends(StructType&);
@@ -149,7 +155,8 @@ private:
         Parser& parser;
     };
 
-    const std::vector<Token>& tokens_;
+    const std::vector<Token>* tokens_ = nullptr; ///< of the text being read
+    std::span<const Annotation> annotations_;    ///< of the text, those that no shader has yet
     SourceSet& sources_;
     Unit unit_;
     size_t at_ = 0;

@@ -228,8 +228,8 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
 /// The tokens from there to here as one line.
 std::string Parser::written(size_t begin) const {
     std::string s;
-    for (size_t i = begin; i < at_ && i < tokens_.size(); ++i) {
-        const Token& t = tokens_[i];
+    for (size_t i = begin; i < at_ && i < tokens_->size(); ++i) {
+        const Token& t = (*tokens_)[i];
         if (i > begin && (t.space || t.lineStart)) s += ' ';
         s += t.text;
     }

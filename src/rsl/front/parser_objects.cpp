@@ -123,7 +123,7 @@ void Parser::structure() {
     std::vector<size_t> methods;
     structureBody(type, methods);
     for (size_t i = begins; i < at_ && sources_.errors() == errors; ++i) {
-        type.text += tokens_[i].text;
+        type.text += (*tokens_)[i].text;
         type.text += ' ';
     }
     if (const auto old = structs_.find(type.name); old != structs_.end() && !type.text.empty()) // two files brought the same one
@@ -211,6 +211,7 @@ void Parser::shaderObject() {
     for (auto& m : methods) s.body->body.push_back(std::move(m));
     owner_ = {};
     inObject_ = false;
+    takeAnnotations(s);
     unit_.classes.push_back(std::move(c));
 }
 

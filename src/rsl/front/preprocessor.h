@@ -6,8 +6,8 @@
 namespace alpenglow::rsl::front {
 
 struct Annotation {
-    size_t token = 0; ///< index of the token that follows it
     std::string key, value;
+    size_t token = 0; ///< index of the token that follows it
 };
 
 struct Preprocessed {

@@ -92,7 +92,7 @@ void Preprocessor::pragma(const std::vector<Token>& line) {
     }
     if (!texts && !isText(3)) value = spelled(line, 3);
     if (!texts) sources_.report(line[3].place, msg::kAnnotationQuotes);
-    out_.annotations.push_back({out_.tokens.size(), isText(2) ? stringValue(line[2].text) : std::string(line[2].text), value});
+    out_.annotations.push_back({isText(2) ? stringValue(line[2].text) : std::string(line[2].text), value, out_.tokens.size()});
 }
 
 void Preprocessor::open(Place at, bool value) {

@@ -1,4 +1,4 @@
-// Names by which class lights of PRMan, of which the front end makes ordinary ones, and loops over their samples know each other.
+// Names that the RSL of the library (rsl/library/classes) shares with loops over the samples of class lights.
 #pragma once
 
 namespace alpenglow::rsl {

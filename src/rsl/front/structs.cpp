@@ -25,7 +25,11 @@ const StructType& Lowering::structOf(Type t) const {
     return isStruct(t) ? unit_.structs[size_t(int(t.base) - kFirstStruct)] : none;
 }
 
-std::string Lowering::shown(Type t) const { return isStruct(t) ? "structure '" + structOf(t).name + "'" : toString(t); }
+std::string Lowering::shown(Type t) const {
+    if (!isStruct(t)) return toString(t);
+    const std::string length = t.array > 0 ? std::to_string(t.array) : "";
+    return "structure '" + structOf(t).name + (t.array ? "[" + length + "]" : "") + "'";
+}
 
 /// A structure inside itself would have no end; what changes its length has no place in an array of structures.
 void Lowering::checkType(size_t index) {
@@ -179,12 +183,14 @@ Symbol* Lowering::newSymbol(const std::string& name, Type type, Storage storage,
 std::vector<Symbol*> Lowering::split(const Symbol& s) {
     std::vector<Symbol*> all;
     if (!arrayPossible(s.type, s.place)) return all;
+    const auto of = std::make_shared<StructVariable>(s.name, int(s.type.base) - kFirstStruct, s.type.array);
     for (const Leaf& l : leaves(s.type)) {
         Symbol* n = newSymbol(s.name + l.path, l.type, s.storage == Storage::Unspecified ? l.storage : s.storage, s.place);
         n->origin = s.origin;
         n->output = s.output;
         n->isExtern = s.isExtern;
         n->isConstant = s.isConstant;
+        n->of = of;
         all.push_back(n);
     }
     return all;

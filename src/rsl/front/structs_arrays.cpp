@@ -325,6 +325,10 @@ void Lowering::measure(ExprPtr& e, List& pre) {
 /// {a, b, ...} for an array of structures, one list for each leaf.
 void Lowering::listOf(Expr& e, Type want, List& pre, List& out) {
     const auto all = leaves({want.base, 0});
+    if (want.array > 0 && e.args.size() > size_t(want.array)) {
+        sources_.report(e.args[size_t(want.array)]->place, msg::kTooManyElements(e.args.size(), want.array));
+        e.args.resize(size_t(want.array));
+    }
     List lists;
     for (size_t i = 0; i < all.size(); ++i) {
         lists.push_back(node(ExprKind::ArrayList, e.place));

@@ -78,6 +78,9 @@ private:
     bool rewriteArray(ExprPtr&);
     static bool inArray(const Expr&);
     bool putsOut(const std::string& function, size_t arguments, size_t i) const;
+    static bool isMethod(const std::string& function);
+    bool takesAnything(const std::string& function) const;
+    bool mustBeVariable(const std::string& function, size_t arguments, size_t i, const Expr& argument) const;
     ExprPtr argument(ExprPtr part, Type, bool output, List& pre, List& after);
     void changeLength(Expr& call, List& pre);
     void popLast(Expr& call, Type, List& pre, List& out);
@@ -135,7 +138,8 @@ private:
     std::vector<std::unordered_map<std::string, Type>> scopes_; ///< void: a variable that is no structure
     std::multimap<std::string, Result> functions_;
     std::vector<std::unique_ptr<Symbol>>* owner_ = nullptr;
-    Type result_ = kNone;
+    Type result_ = kNone;  ///< of the function being taken apart
+    std::string function_; ///< its name
     std::vector<Symbol*> results_;
     std::vector<StmtPtr>* before_ = nullptr;
     int temporaries_ = 0;

@@ -170,7 +170,7 @@ void Lowering::methodCall(Expr& e) {
     e.kind = ExprKind::ShadeopCall;
     const std::string name = methodNamed(t, e.text, e.args.size() - 1);
     if (t.array) {
-        sources_.report(e.place, msg::kStructIsArray(shown(t)), "its elements have methods: a[i]->" + e.text + "()");
+        sources_.report(e.place, msg::kStructIsArray(shown(t.element())), "its elements have methods: a[i]->" + e.text + "()");
     } else if (!name.empty()) {
         e.text = name;
         return;

@@ -107,6 +107,7 @@ void Lowering::statement(StmtPtr s, std::vector<StmtPtr>& target) {
         expression(std::move(s), out);
         break;
     case StmtKind::Return: {
+        if (isStruct(result_) && !s->value) sources_.report(s->place, msg::kReturnEmpty(function_, shown(result_)));
         if (!isStruct(result_) || !s->value) {
             rewrite(s->value);
             out.push_back(std::move(s));
@@ -137,6 +138,7 @@ void Lowering::statement(StmtPtr s, std::vector<StmtPtr>& target) {
 void Lowering::function(Function& f) {
     auto* owner = std::exchange(owner_, &f.symbols);
     const Type result = std::exchange(result_, f.result);
+    const std::string outer = std::exchange(function_, f.name);
     auto results = std::exchange(results_, {});
     scopes_.emplace_back();
     std::vector<Symbol*> parameters;
@@ -179,6 +181,7 @@ void Lowering::function(Function& f) {
     scopes_.pop_back();
     owner_ = owner;
     result_ = result;
+    function_ = outer;
     results_ = std::move(results);
 }
 

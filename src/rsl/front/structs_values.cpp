@@ -169,7 +169,10 @@ void Lowering::flatten(ExprPtr e, List& pre, List& out) {
     methodCall(*e);
     switch (e->kind) {
     case ExprKind::Variable:
-        for (const Leaf& l : leaves(type)) out.push_back(variable(e->text + l.path, place));
+        for (const Leaf& l : leaves(type)) {
+            out.push_back(variable(e->text + l.path, place));
+            out.back()->part = true;
+        }
         return;
     case ExprKind::Index:
         return flattenElement(*e, type, pre, out);
@@ -197,8 +200,13 @@ void Lowering::pick(Expr& e, List& pre, List& out) {
     for (const StructMember& m : structOf(type).members) {
         const size_t parts = isStruct(m.type) ? leaves(m.type).size() : 1;
         if (m.name == e.text)
-            for (size_t i = 0; i < parts; ++i)
+            for (size_t i = 0; i < parts; ++i) {
                 out.push_back(at + i < base.size() ? std::move(base[at + i]) : variable("", e.place));
+                if (isStruct(m.type)) continue;
+                Expr* root = out.back().get(); // a plain member is named itself
+                while (root->kind == ExprKind::Index) root = root->args[0].get();
+                root->part = false;
+            }
         at += parts;
     }
 }
@@ -258,6 +266,31 @@ void Lowering::checkArguments(Expr& call) {
     call.text.clear(); // no more messages about this call
 }
 
+/// Whether the function that a call means is a method of a structure, whose first argument is the structure.
+bool Lowering::isMethod(const std::string& function) { return function.find("->") != function.npos; }
+
+/// Whether a call means a shadeop that shows or stores values of any type, such as printf(): each part of a structure would be
+/// one.
+bool Lowering::takesAnything(const std::string& function) const {
+    const Shadeop* op = functions_.count(function) ? nullptr : findShadeop(function);
+    const auto any = [](const Signature& s) {
+        return std::ranges::any_of(s.parameters, [](const auto& p) { return p.type.base == Base::Void; });
+    };
+    return op && std::ranges::any_of(op->signatures, any);
+}
+
+/// Whether every function that a call can mean stores a value in this argument, which is none that can be stored in.
+bool Lowering::mustBeVariable(const std::string& function, size_t arguments, size_t i, const Expr& argument) const {
+    bool outputs = true, any = false;
+    const auto [from, to] = functions_.equal_range(function);
+    for (auto f = from; f != to; ++f) {
+        if (f->second.parameters.size() != arguments) continue;
+        any = true;
+        outputs &= f->second.outputs[i];
+    }
+    return any && outputs && !path(argument);
+}
+
 Whole Lowering::wholeOf(Type t, size_t members, bool self) { return {int(t.base) - kFirstStruct, int(members), t.array, self}; }
 
 void Lowering::arguments(Expr& call, List& pre, List& after) {
@@ -279,6 +312,13 @@ void Lowering::arguments(Expr& call, List& pre, List& after) {
             continue;
         }
         const Type type = typeOf(*a);
+        const bool anything = takesAnything(call.text), receiver = i == 0 && isMethod(call.text);
+        if (anything || (!receiver && mustBeVariable(call.text, given.size(), i, *a))) {
+            if (anything) sources_.report(a->place, msg::kStructUse(shown(type)), "a member is read by '->'");
+            else sources_.report(a->place, msg::kOutputArgument(call.text));
+            adopt(call, variable("", a->place)); // no more messages about it
+            continue;
+        }
         const Base want = wanted(call.text, given.size(), i, type);
         List parts;
         flatten(std::move(a), pre, parts);
@@ -288,8 +328,7 @@ void Lowering::arguments(Expr& call, List& pre, List& after) {
         const size_t first = call.args.size();
         for (size_t n = 0; n < parts.size(); ++n)
             adopt(call, argument(std::move(parts[n]), n < all.size() ? all[n].type : kNone, output, pre, after));
-        const bool self = i == 0 && call.text.find("->") != call.text.npos;
-        if (first < call.args.size()) call.args[first]->whole = wholeOf(type, call.args.size() - first, self);
+        if (first < call.args.size()) call.args[first]->whole = wholeOf(type, call.args.size() - first, receiver);
     }
 }
 
@@ -367,7 +406,8 @@ void Lowering::rewrite(ExprPtr& e) {
                 for (const StructMember& x : structOf(t).members) names.push_back(x.name);
                 const std::string near = nearestName(e->text, names);
                 if (t.array)
-                    sources_.report(e->place, msg::kStructIsArray(shown(t)), "its elements have members: a[i]->" + e->text);
+                    sources_.report(e->place, msg::kStructIsArray(shown(t.element())),
+                                    "its elements have members: a[i]->" + e->text);
                 else
                     sources_.report(e->place, msg::kNoSuchMember(shown(t), e->text),
                                     near.empty() ? "" : "did you mean '" + near + "'?");

@@ -207,6 +207,18 @@ class Ri:
         box = bound(parameters) if callable(bound) else plain.get("__bound", plain.get("bound"))
         self._context.procedural(lambda detail: subdivide(self, detail, parameters), [-1e30, 1e30] * 3 if box is None else box)
 
+    def Options(self, name: str, handle: str = "", parameters: Optional[Dict[str, Any]] = None, **keywords: Any) -> None:
+        """PRManOptions of PRMan 24: "type category:name" of each parameter is an Option, several numbers are an array. Left out are
+        empty texts, which mean what there is already, and the categories that are requests of their own: Ri, hider, Shutter."""
+        for token, value in {**(parameters or {}), **keywords}.items():
+            kind, _, rest = token.rpartition(" ")
+            category, colon, plain = rest.partition(":")
+            values = [value] if isinstance(value, (str, int, float)) else list(value)
+            if kind in ("int", "float", "string") and len(values) > 1:
+                kind += f"[{len(values)}]"
+            if colon and any(v != "" for v in values) and category not in ("Ri", "hider", "Shutter"):
+                self._context.call("Option", (category,), {f"{kind} {plain}".strip(): value})
+
     def __getattr__(self, name: str) -> Any:
         raise AttributeError(f"there is no request and no constant {name}" + near(name, list(REQUESTS) + list(TOKENS)))
 

@@ -1,7 +1,8 @@
 /* LamaDielectric: glass, plastic's surface, of RIS. Names and defaults are those of Pixar's documentation. A node of others, too:
    lama.h. As the top of LamaLayer what comes through is the node below.
-     fresnelMode 0: reflectivity straight on; 1: IOR
-   Not here: absorption and scattering inside (Interior "medium"), dispersion, iridescence, anisotropyDirection, tailMix. */
+     fresnelMode 0: reflectivity straight on; 1: IOR, over exteriorIOR where overrideExteriorIOR is 1
+     tailMix: the part of a second lobe, whose roughness is tailLength of the way to 1
+   Not here: absorption and scattering inside (Interior "medium"), dispersion, iridescence, anisotropyDirection. */
 #include "lama.h"
 surface LamaDielectric(float fresnelMode = 0; varying float IOR = 1.5; varying float reflectivity = .04;
                        varying color reflectionTint = 1, transmissionTint = 1; varying float roughness = .1, anisotropy = 0;
@@ -13,9 +14,11 @@ surface LamaDielectric(float fresnelMode = 0; varying float IOR = 1.5; varying f
     float root = sqrt(clamp(reflectivity, 0, .99));
     bxdf_out_mirror = reflectionTint;
     bxdf_out_through = transmissionTint;
-    bxdf_out_glassIor = (fresnelMode == 0) ? (1 + root) / (1 - root) : IOR;
+    bxdf_out_glassIor = (fresnelMode == 0) ? (1 + root) / (1 - root) : IOR / LAMA_OUTSIDE;
     bxdf_out_glassRough = roughness;
     bxdf_out_glassAniso = anisotropy;
+    bxdf_out_glassTail = clamp(tailMix, 0, 1);
+    bxdf_out_glassTailRough = lamaTail(roughness, tailLength);
     bxdf_out_bump = (dielectricNormal != none) ? dielectricNormal : normal_;
     LAMA_SURFACE(1)
 }

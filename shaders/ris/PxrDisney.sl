@@ -4,7 +4,7 @@
    Unlike there: the diffuse part is Lambert's and loses what the highlights and the sheen reflect, so that no more light leaves than
    arrives;
    sheen and highlights have the Fresnel factor of the mean facet; the coat has the facets of the highlight (GTR1 there); both sides
-   of the surface are shaded. inputMaterial and inputAOV are not read.
+   of the surface are shaded. inputMaterial is not read.
    Ball: Surface "ris/PxrDisney" "color baseColor" [.2 .5 .8] "float clearcoat" 1 */
 #include "rislobes.h"
 #include "disney.h"

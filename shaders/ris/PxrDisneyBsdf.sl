@@ -6,7 +6,7 @@
      isThin: a sheet; diffTrans (0 to 2) of it lets diffuse light through
      subsurface: part of the diffuse light that walks below the surface by subsurfaceColor (black: baseColor), as far as
        scatterDistances (scene units); g is its direction
-   Unlike there: as in PxrDisney. transmissionBehavior, shadowBumpTerminator and inputAOV are not read.
+   Unlike there: as in PxrDisney. transmissionBehavior and shadowBumpTerminator are not read.
    Ball: Surface "ris/PxrDisneyBsdf" "color baseColor" [.9 .9 .9] "float specTrans" 1 "float roughness" .2 */
 #include "rislobes.h"
 #include "disney.h"

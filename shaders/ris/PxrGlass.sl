@@ -4,7 +4,7 @@
 #include "rislobes.h"
 surface PxrGlass(varying float ior = 1.5, roughness = 0, anisotropic = 0, reflectionGain = 1, transmissionGain = 1;
                  varying color reflectionColor = .5, transmissionColor = .8, absorptionColor = 1; varying float absorptionGain = 0;
-                 float thin = 0; varying normal bumpNormal = 0; varying float presence = 1;)
+                 float thin = 0; varying normal bumpNormal = 0; varying float presence = 1, inputAOV = 0;)
 {
     normal n;
     float front = risSide(normal 0, bumpNormal, n), ax, ay;

@@ -1,8 +1,8 @@
-/* PxrLMMetal: a metal by index of refraction and extinction, of RIS. Names are those of Pixar's documentation.
+/* PxrLMMetal: a metal by index of refraction and extinction, of RIS. Names and defaults are those of Pixar's documentation.
    Ball: Surface "ris/PxrLMMetal" */
 #include "rislobes.h"
-surface PxrLMMetal(varying color eta = color(.2, .92, 1.1), kappa = color(3.9, 2.45, 2.14), specularColor = 1;
-                   varying float roughness = .3, anisotropy = 0; varying normal bumpNormal = 0; varying float presence = 1;)
+surface PxrLMMetal(varying color eta = color(4.369684, 2.916713, 1.654698), kappa = color(5.20643, 4.231366, 3.754969), specularColor = 1;
+                   varying float roughness = .1, anisotropy = 0; varying normal bumpNormal = 0; varying float presence = 1, inputAOV = 0;)
 {
     normal n;
     risSide(normal 0, bumpNormal, n);

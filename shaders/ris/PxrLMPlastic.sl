@@ -7,7 +7,7 @@ surface PxrLMPlastic(varying color diffuseColor = .5; varying float diffuseRough
                      varying color specularColor = 1; varying float specularEta = 1.5, specularRoughness = .3, specularAnisotropy = 0;
                      varying color clearcoatColor = 0; varying float clearcoatRoughness = .05, clearcoatEta = 1.5, clearcoatThickness = 0;
                      varying color clearcoatTransmission = 1, emission = 0;
-                     varying normal diffuseNn = 0, specularNn = 0, clearcoatNn = 0; varying float presence = 1;)
+                     varying normal diffuseNn = 0, specularNn = 0, clearcoatNn = 0; varying float presence = 1, inputAOV = 0;)
 {
     normal n, nShine, nCoat;
     risSide(normal 0, diffuseNn, n);

@@ -2,7 +2,7 @@
    mirrored, TT goes through, TRT is mirrored inside. For Curves. Parameters and defaults are those of Pixar's documentation.
      specularConeAngle*: spread along the strand, degrees; specularOffset: how far the scales tilt it, degrees, below 0 to the root
      specularEccentricity: 1 is round. Unlike there: glints, specularMixFresnel and energy compensation are not read; the diffuse
-     part is Lambert's about the strand's side that faces the eye; shadowColor and inputAOV are not read. */
+     part is Lambert's about the strand's side that faces the eye; shadowColor is not read. */
 #include "layers.h"
 surface PxrMarschnerHair(float diffuseModelType = 0; varying float diffuseGain = 0; varying color diffuseColor = .18;
                          varying float specularGainR = 1, specularGainTRT = 1, specularGainTT = 1, specularGainGLINTS = 1;

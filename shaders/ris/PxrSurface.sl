@@ -7,7 +7,7 @@
      refractionGain replaces diffuse and subsurface light by light that comes through
    Unlike there: both sides are shaded (DoubleSided is not read); iridescence is that of mode 0; single scattering and all
    types of subsurface are random walks; fuzz is diffuse light weighted by what a sheen reflects in all; ssAlbedo, extinction and g
-   of the inside are not read (Interior "medium"); mw*, shadow*, userColor, utilityPattern, inputMaterial neither.
+   of the inside are not read (Interior "medium"); mw*, shadowMode, userColor, inputMaterial neither.
    Ball: Surface "ris/PxrSurface" "color diffuseColor" [.5 .1 .05] "color specularFaceColor" [.1 .1 .1] "color specularEdgeColor" [1 1 1] */
 #include "rislobes.h"
 surface PxrSurface

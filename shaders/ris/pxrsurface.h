@@ -132,6 +132,8 @@
             below = layerPower(max(clearcoatAbsorptionTint, color 1e-4), clearcoatThickness / max(nc . V, .1));
         light = coat + below * light * (1 - clearcoatEnergyCompensation * shines);
     }
-    Oi = presence;
+    color solid = presence; /* shadows keep what is not shadowColor */
+    if (shadowColor != black) solid *= 1 - isshadowray() * clamp(shadowColor, black, white);
+    Oi = solid;
     Ci = presence * (light + glowGain * glowColor);
 }

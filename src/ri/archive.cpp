@@ -158,9 +158,9 @@ std::string Interpreter::depthMap(const std::string& name, const SourcePlace& pl
 }
 
 std::string Interpreter::locate(const char* what, const std::string& name, const SourcePlace& place,
-                                bool (*named)(const std::string&)) {
+                                bool (*named)(const std::string&), const char* along) {
     std::vector<std::string> folders;
-    if (auto o = options.values.find("searchpath:archive"); o != options.values.end() && !o->second.strings.empty())
+    if (auto o = options.values.find(std::string("searchpath:") + along); o != options.values.end() && !o->second.strings.empty())
         for (const std::string& f : splitSearchPath(o->second.strings[0])) {
             if (f == "@") continue; // the standard places are looked through below
             folders.push_back(f);

@@ -287,6 +287,7 @@ private:
     void learn(SharedArchive& of, const std::string& file);
     // ris.cpp
     std::shared_ptr<scene::ShaderCall> networkCall(const Call&);
+    void oslPatterns(const Call&, const scene::ShaderCall& given, const scene::Param& named); ///< oslnetwork.cpp
     void overrideAttributes(scene::Frame&) const;
     void addFilters(Call& call) const;
     void addProfile(Call& call);
@@ -324,7 +325,9 @@ private:
     std::optional<ArchiveShelf::Found> locateArchive(const std::string& name, const SourcePlace& place);
     /// Path of a file along the search paths of archives; "" when there is none or it may not be read: reported. named: whether a
     /// name says that it is of this kind, others are read from the scene's own folders only.
-    std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&));
+    /// along: the searchpath that is looked through, "archive" or "shader".
+    std::string locate(const char* what, const std::string& name, const SourcePlace& place, bool (*named)(const std::string&),
+                       const char* along = "archive");
     void run(class Parser& parser);
     /// execute() without ReaderOptions::filter.
     void take(const Call& call);

@@ -3,6 +3,7 @@
 #include "ri/ris.h"
 #include "ri/interpreter.h"
 #include "ri/motion.h"
+#include "ri/oslnetwork.h"
 #include "scene/network.h"
 #include <algorithm>
 #include <fmt/format.h>
@@ -31,6 +32,7 @@ public:
         copy->params.clear();
         for (const scene::Param& p : call.params) {
             auto c = scene::connectionOf(p);
+            if (c) intoLayer(*c);
             if (!c) copy->params.push_back(p);
             else if (follow(*c, call)) {
                 c->handle = scene::keptHandle(keeper_, c->handle);
@@ -43,13 +45,22 @@ public:
     std::map<std::string, scene::ShaderRef> kept;
 
 private:
+    /// "C.Cout" of a network of OSL is the output Cout of its layer C.
+    void intoLayer(scene::Connection& c) const {
+        const size_t dot = c.output.find('.');
+        if (dot == std::string::npos) return;
+        std::string layer = layerHandle(c.handle, std::string_view(c.output).substr(0, dot));
+        if (!patterns_.count(layer)) return;
+        c.handle = std::move(layer);
+        c.output.erase(0, dot + 1);
+    }
     bool follow(const scene::Connection& c, const scene::ShaderCall& of) {
         const std::string what = fmt::format("\"{}\" of {} keeps its own value", c.parameter, of.name);
         if (std::find(way_.begin(), way_.end(), c.handle) != way_.end()) {
             std::string circle;
-            for (auto i = std::find(way_.begin(), way_.end(), c.handle); i != way_.end(); ++i) circle += *i + " > ";
+            for (auto i = std::find(way_.begin(), way_.end(), c.handle); i != way_.end(); ++i) circle += shownHandle(*i) + " > ";
             in_.reporter.error(Rie::BadHandle, c.place,
-                               fmt::format("connections run in a circle: {}{}; {}", circle, c.handle, what));
+                               fmt::format("connections run in a circle: {}{}; {}", circle, shownHandle(c.handle), what));
             return false;
         }
         const std::string key = scene::keptHandle(keeper_, c.handle);
@@ -58,7 +69,7 @@ private:
         if (found == patterns_.end()) {
             std::vector<std::string> known;
             for (const auto& [handle, call] : patterns_)
-                if (!scene::isKept(handle)) known.push_back(handle);
+                if (!scene::isKept(handle)) known.push_back(shownHandle(handle));
             const std::string near = nearestName(c.handle, known);
             in_.reporter.once("ri:pattern:" + of.name + c.parameter + c.handle, Severity::Error, Rie::BadHandle, c.place,
                               fmt::format("there is no Pattern \"{}\" here: {}", c.handle, what),
@@ -122,16 +133,21 @@ std::shared_ptr<scene::ShaderCall> Interpreter::networkCall(const Call& call) {
 
 void Interpreter::pattern(const Call& call) {
     std::shared_ptr<scene::ShaderCall> p = networkCall(call);
+    auto& known = attributes().coshaders; // layers of a network that the handle was
+    for (auto c = known.lower_bound(layersOf(call.text(1))); c != known.end() && c->first.starts_with(layersOf(call.text(1)));)
+        c = known.erase(c);
+    if (const scene::Param* net = scene::find(p->params, "network"); net && p->name == "PxrOSL")
+        return oslPatterns(call, *p, *net);
     if (p->name == "PxrOSL") { // its "shader" is the pattern
         const auto named = std::find_if(p->params.begin(), p->params.end(), [](const auto& v) { return v.name == "shader"; });
         if (named == p->params.end() || named->strings.empty()) {
-            reporter.error(Rie::MissingData, call.place, "Pattern \"PxrOSL\" needs \"string shader\"");
+            reporter.error(Rie::MissingData, call.place, "Pattern \"PxrOSL\" needs \"string shader\" or \"string network\"");
             return;
         }
         p->name = named->strings[0];
         p->params.erase(named);
     }
-    attributes().coshaders[call.text(1)] = std::move(p);
+    known[call.text(1)] = std::move(p);
 }
 
 scene::ShaderRef Interpreter::network(const Call& call, scene::Keeper keeper) {

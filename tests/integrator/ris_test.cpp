@@ -202,6 +202,57 @@ TEST(RisNetwork, DisplacementTakesPatternsToo) {
     EXPECT_NEAR(std::fabs(z - 2), .7, 1e-4);
 }
 
+TEST(RisNetwork, InvertKnowsColourModels) {
+    const auto inverted = [](int model, const std::string& channels) {
+        return shown("Pattern \"PxrInvert\" \"i\" \"color inputRGB\" [.2 .4 .6] \"int colorModel\" " + std::to_string(model) +
+                     channels + "\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"i:resultRGB\"]\n");
+    };
+    const std::string third = " \"int invertChannel0\" 0 \"int invertChannel1\" 0",
+                      second = " \"int invertChannel0\" 0 \"int invertChannel2\" 0";
+    // Hue 210 degrees. HSL: saturation .5, lightness .4 > .6: the chroma of .4 stays. HSV: saturation 2/3, value .6 > .4.
+    const struct {
+        Color got;
+        double want[3];
+    } all[] = {{inverted(0, ""), {.8, .6, .4}},
+               {inverted(1, third), {.4, .6, .8}},
+               {inverted(2, third), {.4 / 3, .8 / 3, .4}},
+               {inverted(2, second), {.4, .5, .6}}};
+    for (const auto& c : all)
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(c.got[k], c.want[k], 1e-5) << &c - all;
+}
+
+TEST(RisNetwork, MattesAreChannels) {
+    writeShaders();
+    Settings s = path();
+    s.outputs = {"MatteID0", "MatteID1"};
+    Scene scene("WorldBegin\nAttribute \"user\" \"color MatteID0\" [1 0 .5]\nPattern \"PxrMatteID\" \"m\" \"color "
+                "matteTexture0\" [.5 1 1]\nBxdf \"PxrSurface\" \"b\" \"reference int[1] utilityPattern\" "
+                "[\"m:resultAOV\"]\n" +
+                    std::string(kSquare) + "WorldEnd\n",
+                s);
+    EXPECT_EQ(scene.trace(std::vector<CameraRay>{rayTo({0, 0, 0}, {.25f, .5f, 2})})[0].aovs,
+              (std::vector<float>{.5f, 0, .5f, 0, 0, 0}));
+}
+
+TEST(RisNetwork, NetworksOfOslGiveWhatTheirLayersCompute) {
+    writeShaders();
+    std::ofstream(shaderFolder() + "/risscale.osl")
+        << "shader risscale(color c = .5, float by = 2, output color Cout = 0) { Cout = c * by; }\n";
+    std::ofstream(shaderFolder() + "/risnet.xml")
+        << "<RenderManOSLNetwork><Node><NodeId>risscale</NodeId><NodeLayer>A</NodeLayer></Node><Node><NodeId>risscale</NodeId>"
+           "<NodeLayer>B</NodeLayer></Node><Connection><Source><NodeLayer>A</NodeLayer><ParameterName>Cout</ParameterName>"
+           "</Source><Destination><NodeLayer>B</NodeLayer><ParameterName>c</ParameterName></Destination></Connection>"
+           "</RenderManOSLNetwork>";
+    Scene s("Option \"searchpath\" \"string shader\" [\"" + shaderFolder() +
+                ":@\"]\nWorldBegin\nPattern \"PxrOSL\" \"m\" \"string network\" \"risnet\" \"color A.c\" [.1 .2 .3] \"float "
+                "B.by\" 5\nBxdf \"showcolor\" \"b\" \"reference color c\" [\"m:B.Cout\"]\n" +
+                kSquare + "WorldEnd\n",
+            path());
+    const Color c = s.one(rayTo({0, 0, 0}, {.25f, .5f, 2}));
+    EXPECT_NEAR(c.x, .1 * 2 * 5, 1e-6) << s.messages();
+    EXPECT_NEAR(c.z, .3 * 2 * 5, 1e-6);
+}
+
 /// diffuse() of white paint at the middle of the square, which faces a light behind the eye.
 void expectPaint(const std::string& light, double want, const std::string& what, double precision = .01) {
     writeShaders();

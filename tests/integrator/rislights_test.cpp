@@ -66,7 +66,7 @@ TEST(RisLights, MapsOfDomesAreTurnedAsPublished) {
 
 // The light of the shape is that of its radiance, intensity / area, through the form factor.
 TEST(RisLights, GeometryThatShinesMayKeepItsPowerAtAnySize) {
-    for (const char* light : {"AreaLightSource \"PxrStdAreaLight\" \"a\" \"float intensity\" 4 \"float areaNormalize\" 1",
+    for (const char* light : {"AreaLightSource \"PxrStdAreaLight\" \"a\" \"float intensity\" 4",
                               "Light \"PxrMeshLight\" \"a\" \"float intensity\" 4 \"int areaNormalize\" 1"})
         for (double half : {.05, .5}) {
             std::ostringstream shape;
@@ -75,11 +75,17 @@ TEST(RisLights, GeometryThatShinesMayKeepItsPowerAtAnySize) {
             const double want = 4 / (4 * half * half) * ofRectangle(half, half, 2);
             expectMean(paint(block(shape.str())), want, .01 * want, light);
         }
-    expectMean(
-        paint(block(
-            "Light \"PxrMeshLight\" \"a\" \"float intensity\" 4\nBxdf \"PxrBlack\" \"k\"\nPolygon \"P\" [-1 -1 0  1 -1 0  1 "
-            "1 0  -1 1 0]")),
-        4 * ofRectangle(1, 1, 2), .02, "a mesh keeps its radiance");
+    for (const char* light : {"Light \"PxrMeshLight\" \"a\" \"float intensity\" 4",
+                              "AreaLightSource \"PxrStdAreaLight\" \"a\" \"float intensity\" 4 \"int areaNormalize\" 0"})
+        expectMean(paint(block(std::string(light) + "\nBxdf \"PxrBlack\" \"k\"\nPolygon \"P\" [-1 -1 0  1 -1 0  1 1 0  -1 1 0]")),
+                   4 * ofRectangle(1, 1, 2), .02, light);
+}
+
+TEST(RisLights, ShadowsKeepWhatIsNotShadowColor) {
+    const std::string sheet = "Bxdf \"PxrSurface\" \"s\" \"float diffuseGain\" 0 \"color shadowColor\" [.3 .3 .3]\n"
+                              "Polygon \"P\" [-9 -9 -1  9 -9 -1  9 9 -1  -9 9 -1]";
+    expectMean(paint("Light \"PxrDistantLight\" \"l\" \"float intensity\" 2 \"int areaNormalize\" 1\n" + block(sheet)),
+               .3 * 2 / M_PI, .001, "behind a sheet");
 }
 
 TEST(RisLights, AMissingMapIsSaidAndTheLightShinesWithoutIt) {

@@ -55,6 +55,17 @@ def lines_of(draw):
     return [l.strip() for l in rib_of(draw, **{"string asciistyle": "wide"}).decode().splitlines() if l and not l.startswith("##")]
 
 
+class OptionsOfPrman24(InFolder):
+    def test_each_is_an_option_of_its_category(self):
+        def draw(ri):
+            ri.Options("PRManOptions", "id", {"string searchpath:texture": ["maps:@"], "int limits:bucketsize": [16, 8],
+                                              "string searchpath:shader": [""], "int Ri:Frame": [3], "float hider:maxsamples": 4,
+                                              "string statistics:filename": "a.xml"})
+
+        self.assertEqual(lines_of(draw), ['Option "searchpath" "string texture" ["maps:@"]', 'Option "limits" "int[2] bucketsize" [16 8]',
+                                          'Option "statistics" "string filename" ["a.xml"]'])
+
+
 class Rendering(InFolder):
     def test_it_makes_the_bits_of_the_same_scene_as_rib(self):
         ri = prman.Ri()

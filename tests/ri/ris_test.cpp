@@ -1,8 +1,11 @@
 // Requests of RIS: networks of patterns by handle, lights that are on everywhere, the hider that follows (docs/ris.md).
 #include "collect.h"
 #include "ri/lightfilters.h"
+#include "ri/oslnetwork.h"
 #include "ri/ris.h"
 #include "scene/network.h"
+#include <filesystem>
+#include <fstream>
 
 namespace ris_test {
 
@@ -178,6 +181,64 @@ TEST(Ris, PxrOslNamesItsShader) {
     EXPECT_EQ(c->only().code, Rie::MissingData);
     EXPECT_EQ(valueOf(c->primitive(), "fuzz"), .1f);
     EXPECT_EQ(c->primitive().attributes->coshaders.at(connectionOf(c->primitive()).handle)->name, "band");
+}
+
+/// Two nodes of "stripes" and one of "blend", which takes both.
+const char* kNetworkXml = "<?xml version=\"1.0\"?>\n<RenderManOSLNetwork Version=\"1\"><!-- <Node> -->\n<NodeList>\n"
+                          "<Node><NodeId>stripes</NodeId><NodeLayer>A</NodeLayer><Properties><width/></Properties></Node>\n"
+                          "<Node><NodeId>stripes</Id><NodeLayer>B</Layer></Node>\n<Node><NodeId> blend </NodeId></Node>\n"
+                          "</NodeList><ConnectionList>\n<Connection><Source><NodeId>stripes</NodeId><NodeLayer>B</NodeLayer>"
+                          "<ParameterName>Cout</ParameterName></Source><Destination><NodeId>blend</NodeId>"
+                          "<ParameterName>first</ParameterName></Destination></Connection>\n</ConnectionList>\n"
+                          "</RenderManOSLNetwork>\n";
+
+TEST(Ris, NetworksOfOslAreRead) {
+    std::string why;
+    const auto n = oslNetwork(kNetworkXml, why);
+    ASSERT_TRUE(n) << why;
+    ASSERT_EQ(n->nodes.size(), 3u);
+    EXPECT_EQ(n->nodes[1].shader + n->nodes[1].layer, "stripesB");
+    EXPECT_EQ(n->nodes[2].layer, "blend"); // without a layer
+    ASSERT_EQ(n->links.size(), 1u);
+    EXPECT_EQ(n->links[0].from + " " + n->links[0].output + " " + n->links[0].to + " " + n->links[0].parameter,
+              "B Cout blend first");
+    const std::string xml = kNetworkXml;
+    std::string lost = xml;
+    lost.replace(lost.find("<Source><NodeId>stripes</NodeId><NodeLayer>B"), 45, "<Source><NodeId>nobody</NodeId><NodeLayer>C");
+    for (const std::string& bad :
+         {std::string(), std::string("<"), std::string("<a><Node></Node></a>"), lost,
+          std::string("<RenderManOSLNetwork><Node></Node>"), std::string("<!-- <RenderManOSLNetwork>")}) {
+        why.clear();
+        EXPECT_FALSE(oslNetwork(bad, why)) << bad;
+        EXPECT_FALSE(why.empty()) << bad;
+    }
+    for (size_t cut = 0; cut < xml.size(); ++cut) oslNetwork(xml.substr(0, cut), why); // ends
+}
+
+TEST(Ris, ALayerOfANetworkIsAPatternOfItsOwn) {
+    const auto folder = std::filesystem::temp_directory_path() / ("alpenglow_oslnet_" + std::to_string(::getpid()));
+    std::filesystem::create_directories(folder);
+    std::ofstream(folder / "net.xml") << kNetworkXml;
+    const std::string option = "Option \"searchpath\" \"string shader\" [\"" + folder.string() + "\"]\nWorldBegin\n",
+                      use = "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"m:B.Cout\"]\nSphere 1 -1 1 360\n",
+                      first = "Pattern \"PxrOSL\" \"m\" \"string network\" \"net\" \"float A.width\" .1 \"float B.width\" .3\n";
+    auto c = read(option + first + use + "Pattern \"PxrMix\" \"m\" \"float mix\" .5\n" + use + "WorldEnd\n");
+    EXPECT_EQ(valueOf(c->primitive(), "width"), .3f);
+    EXPECT_EQ(c->primitive().attributes->coshaders.at(connectionOf(c->primitive()).handle)->name, "stripes");
+    EXPECT_EQ(connectionOf(c->primitive()).output, "Cout");
+    EXPECT_EQ(valueOf(c->primitive(1), "mix"), .5f); // the layers ended with their handle
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    auto last = read(option + first +
+                     "Bxdf \"PxrDiffuse\" \"d\" \"reference color diffuseColor\" [\"m:Cout\"]\nSphere 1 -1 1 "
+                     "360\nWorldEnd\n");
+    const auto at = last->primitive().attributes->coshaders.find(connectionOf(last->primitive()).handle);
+    ASSERT_NE(at, last->primitive().attributes->coshaders.end()) << last->messages();
+    EXPECT_EQ(at->second->name, "blend");
+    EXPECT_EQ(scene::connectionsOf(*at->second).at(0).parameter, "first");
+    EXPECT_EQ(inWorld("Pattern \"PxrOSL\" \"m\" \"string network\" \"nowhere\"\nSphere 1 -1 1 360")->only().code, Rie::NoFile);
+    std::ofstream(folder / "net.xml") << "<html/>";
+    EXPECT_EQ(read(option + first + "Sphere 1 -1 1 360\nWorldEnd\n")->only().code, Rie::BadFile);
+    std::filesystem::remove_all(folder);
 }
 
 TEST(Ris, PxrVolumeIsWhatIsInside) {

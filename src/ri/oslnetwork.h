@@ -1,0 +1,36 @@
+// Networks of OSL shaders in one Pattern "PxrOSL" "string network": an XML file has their nodes and connections
+// ("Working with PxrOSL", renderman.pixar.com/resources/RenderMan_20/PxrOSLRef.html).
+#pragma once
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace alpenglow::ri {
+
+/// A shader of a network, under a name that is its own there.
+struct OslNode {
+    std::string shader, layer;
+};
+/// An output of a layer that gives a parameter of another its value.
+struct OslLink {
+    std::string from, output, to, parameter;
+};
+struct OslNetwork {
+    std::vector<OslNode> nodes;
+    std::vector<OslLink> links;
+};
+
+/// Reads a network. A node without <NodeLayer> has its <NodeId> as its name; connections name layers, or shaders where they name
+/// no layer that is there. Names of closing tags are not compared: files in use have wrong ones. Nothing: `why` says what is
+/// wrong.
+std::optional<OslNetwork> oslNetwork(std::string_view xml, std::string& why);
+
+/// Handle of the pattern that a layer of the Pattern "handle" is, with a byte that no handle of a scene has.
+std::string layerHandle(std::string_view handle, std::string_view layer);
+/// What all handles of layers of a Pattern begin with.
+std::string layersOf(std::string_view handle);
+/// The handle as messages have it: "handle:layer".
+std::string shownHandle(std::string_view handle);
+
+} // namespace alpenglow::ri

@@ -36,13 +36,15 @@ TEST_F(Server, DefinitionOfAMethodBehindAHandle) {
 TEST_F(Server, MembersOfAStructure) {
     EXPECT_EQ(labels(ask("completion", kStruct + "Ci = color q->|; }\n")), (std::vector<std::string>{"o", "d", "len"}));
 }
-// Structures of the same members are told apart by their type.
+// Structures of the same members are distinguished by their type.
+const std::string kAlike =
+    "struct A { float x; float fromA() { return x; } };\nstruct B { float x; float fromB() { return x; } };\n"
+    "struct Both { A first; B second; };\nsurface a() {\n    Both both; B q; ";
 TEST_F(Server, MembersOfOneOfTwoLikeStructures) {
-    const std::string like =
-        "struct A { float x; float fromA() { return x; } };\nstruct B { float x; float fromB() { return x; } };\n"
-        "struct Both { A first; B second; };\nsurface a() {\n    Both both; B q; ";
-    EXPECT_EQ(labels(ask("completion", like + "Ci = color q->|; }\n")), (std::vector<std::string>{"x", "fromB"}));
-    EXPECT_EQ(labels(ask("completion", like + "Ci = color both->second->|; }\n")), (std::vector<std::string>{"x", "fromB"}));
+    EXPECT_EQ(labels(ask("completion", kAlike + "Ci = color q->|; }\n")), (std::vector<std::string>{"x", "fromB"}));
+}
+TEST_F(Server, MembersOfAStructureInAnother) {
+    EXPECT_EQ(labels(ask("completion", kAlike + "Ci = color both->second->|; }\n")), (std::vector<std::string>{"x", "fromB"}));
 }
 TEST_F(Server, HoverOfAMemberOfAStructure) {
     const std::string t = hoverText(ask("hover", kStruct + "Ci = color q->|o; }\n"));

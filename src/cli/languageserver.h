@@ -27,15 +27,16 @@ public:
     static Json error(const Json& id, int code, const std::string& text);
 
 private:
+    /// The result of a request. Throws Refused, or the exceptions of Json for parameters of another form.
     Json request(const std::string& method, const Json& params);
     void notification(const std::string& method, const Json& params);
     void didOpen(const Json& params);
     void didChange(const Json& params);
     void didClose(const Json& params);
     void didRename(const Json& params);
-    /// A text is to be checked again.
+    /// Queues a text for publish().
     void changed(const std::string& uri);
-    /// The same of what includes a text that is open: it sees what the editor shows, not what the disk has.
+    /// Queues the open texts that include this file: they see the editor's version, not the one on disk.
     void includersChanged(const std::string& path);
 
     Json initialize(const Json& params);
@@ -54,7 +55,7 @@ private:
     void eachRelated(Document&, const std::function<void(const std::string& uri, const Document&)>&);
     Json semanticTokens(const Json& params); // lsptokens.cpp
     Json formatting(const Json& params);     // lspformat.cpp
-    // lsprib.cpp: the same questions about a scene
+    // lsprib.cpp: the same requests in a scene
     Json ribCompletion(const Document&, size_t at);
     Json ribHover(const Document&, size_t at);
     Json ribDefinition(const Document&, size_t at);
@@ -63,24 +64,26 @@ private:
     Json diagnosticsOf(const std::string& uri, Document&);
 
     Document* document(const Json& params); ///< null when it is not open; analysed
+    /// Byte offset in the text of a position of the protocol, and ranges and positions of the protocol for byte offsets.
     size_t position(const Document&, const Json& position) const;
     Json range(const Document&, size_t begin, size_t end) const;
     Json place(const Document&, size_t at) const;
-    Json location(const Origin&, size_t length);
-    std::string textOf(const std::string& path);
+    Json location(const Origin&, size_t length); ///< `length` in bytes
+    std::string textOf(const std::string& path); ///< the editor's version if the file is open; "" if it cannot be read
     rsl::FrontOptions optionsFor(const Document&) const;
-    /// Column of a line for the client, in its units.
+    /// A column as the client counts (UTF-16 units, or bytes if it takes UTF-8), and back.
     size_t units(std::string_view line, size_t bytes) const;
     size_t bytes(std::string_view line, size_t units) const;
 
     rsl::FrontOptions options_;
-    std::map<std::string, Document> documents_; ///< by URI
-    std::vector<std::string> changed_;          ///< URIs
+    std::map<std::string, Document> documents_; ///< open texts by URI
+    std::vector<std::string> changed_;          ///< URIs of texts for publish()
     std::vector<Json> pending_;                 ///< to be sent before the next answer
-    bool utf8_ = false, initialized_ = false, shutdown_ = false, ended_ = false;
+    bool utf8_ = false;                         ///< columns are bytes, as agreed in initialize()
+    bool initialized_ = false, shutdown_ = false, ended_ = false;
 };
 
-/// A request that cannot be met, with the reason for the person who asked.
+/// A request that cannot be fulfilled, with the reason, which the editor shows.
 struct Refused {
     std::string why;
 };

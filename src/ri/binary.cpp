@@ -1,4 +1,4 @@
-// The binary tokens of RIB, RISpec 3.2, appendix C.2. Integers and fixed point numbers are signed, as the specification says.
+// The binary tokens of RIB (RISpec 3.2, appendix C.2). Integers and fixed point numbers are signed.
 #include "base/limits.h"
 #include "ri/lexer.h"
 #include "ri/requests/request.h"
@@ -11,7 +11,7 @@
 namespace alpenglow::ri {
 namespace {
 
-constexpr size_t kBuffered = 64u << 10; // bytes of an array that memory is taken for before they come
+constexpr size_t kBuffered = 64u << 10; // bytes of an array that are allocated before they are read
 
 inline uint32_t fromBig(uint32_t v) { return std::endian::native == std::endian::little ? __builtin_bswap32(v) : v; }
 
@@ -37,7 +37,7 @@ bool Lexer::byte(unsigned& out) {
 
 bool Lexer::bytes(size_t n, std::string& out) {
     out.clear();
-    while (out.size() < n) { // grows with what really comes, so a lying length costs nothing
+    while (out.size() < n) { // grows with the bytes read: a wrong length allocates nothing
         if (!at()) return false;
         size_t take = std::min(n - out.size(), end_ - pos_);
         out.append(buffer_.data() + pos_, take);
@@ -64,7 +64,7 @@ bool Lexer::binaryString(std::string& out, const char* what) {
     return false;
 }
 
-/// n floats to t.floats, as many as come: a lying length costs nothing.
+/// n floats to t.floats, or as many as there are: a wrong length allocates nothing.
 bool Lexer::binaryFloats(Token& t, uint64_t n) {
     t.floats.clear();
     t.floats.reserve(size_t(std::min<uint64_t>(n, kBuffered / 4)));
@@ -186,7 +186,7 @@ bool Lexer::binary(Token& t) {
         if (n > limits::kStringBytes) {
             reporter_.error(Rie::Limit, place(line, at),
                             "a string is longer than " + std::to_string(limits::kStringBytes) + " bytes");
-            return false; // what follows cannot be told from noise; the request is lost, the reader resynchronises
+            return false; // what follows cannot be decoded: the request is dropped, the reader resynchronises
         }
         t.kind = Token::Kind::String;
         return bytes(n, t.text) || truncated("a binary string");

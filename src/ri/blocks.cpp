@@ -14,7 +14,7 @@ constexpr const char* kBegins[] = {"FrameBegin", "WorldBegin",  "AttributeBegin"
 constexpr const char* kEnds[] = {"FrameEnd", "WorldEnd",  "AttributeEnd", "TransformEnd",
                                  "SolidEnd", "ObjectEnd", "ResourceEnd",  "EditEnd"};
 
-/// Takes what requests set; where things stand in solids stays.
+/// Takes over what requests set, but keeps the place within a solid.
 void takeAll(scene::Attributes& to, const scene::Attributes& from) {
     scene::Attributes restored = from;
     restored.solid = std::move(to.solid);

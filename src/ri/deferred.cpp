@@ -44,7 +44,7 @@ void Interpreter::restore(const Lasting& l) {
     errorsOfAllBefore_ = l.errorsOfAllBefore;
 }
 
-/// Those that wait from this number on see the names of what they stand in as they are now.
+/// Procedurals from this number on refer to objects, lights and spaces by their current names.
 void Interpreter::nameWaiting(size_t from) {
     if (from >= waiting_.size()) return;
     const auto names = std::make_shared<const Lasting>(lasting());
@@ -55,7 +55,7 @@ void Interpreter::nameWaiting(size_t from) {
     }
 }
 
-/// What says of attributes which part they belong to.
+/// Marks attributes with the part that they belong to.
 void Interpreter::markPart(scene::Attributes& a) const { a.part = part_; }
 
 /// Content of one that waits, behind what is there.
@@ -93,7 +93,7 @@ void Interpreter::putMade(const std::vector<PrimitiveRef>& from, std::vector<Pri
     }
 }
 
-/// Instances go by the parts that they stand in, in the order of the scene.
+/// Orders instances by their parts, in the order of the scene.
 void Interpreter::orderInstances(scene::Frame& f) const {
     std::map<std::string, size_t> order{{"", 0}};
     for (const PrimitiveRef& p : f.primitives)

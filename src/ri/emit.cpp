@@ -56,7 +56,7 @@ void Interpreter::light(const Call& call, bool area) {
     l.shader = shader(call);
     l.handle = call.text(1);
     l.area = area;
-    // A light asks nothing of the list of lights; without it, thousands in a row take no square of their number.
+    // A light does not need the list of lights. Without it, the time for n lights in a row is not quadratic in n.
     auto own = std::make_shared<scene::Attributes>(*snapshot());
     own->lights.clear();
     l.attributes = std::move(own);
@@ -120,7 +120,7 @@ void Interpreter::emit(scene::Primitive p, const Call& call) {
                       fmt::format("{} outside WorldBegin and WorldEnd is not drawn", call.request->name));
         return;
     }
-    if (p.kind.empty()) p.kind = std::string(call.request->name); // a file or a shape that stands for others names their kind
+    if (p.kind.empty()) p.kind = std::string(call.request->name); // those of a file or of another shape have a kind
     p.place = call.place;
     p.attributes = solidPart(call);
     p.toWorld = state.ctm;
@@ -191,7 +191,7 @@ void Interpreter::instance(const Call& call) {
     }
     if (openObject()) { // objects are flat: an instance inside one is copied in
         for (const scene::PrimitiveRef& p : i->second->object.primitives) {
-            if (++objectCopies_ > limits::kObjectCopies) { // a few lines can ask for any number
+            if (++objectCopies_ > limits::kObjectCopies) { // nested objects multiply: a few lines can make any number
                 reporter.once("ri:objectcopies", Severity::Error, Rie::Limit, call.place,
                               fmt::format("instances inside objects copy more than {} primitives", limits::kObjectCopies));
                 return;

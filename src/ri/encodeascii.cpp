@@ -103,7 +103,7 @@ private:
     size_t indentation_;
     int columns_;
     int depth_ = 0; ///< blocks around the next request
-    int more_ = 1;  ///< further steps of the lines that a request goes on in
+    int more_ = 1;  ///< additional indentation of continuation lines, in steps
     uint64_t lineStart_ = 0;
     std::string item_;
 };

@@ -39,7 +39,7 @@ public:
         put(0246);
         put(unsigned(slot->second));
     }
-    /// A newline costs a byte and gives messages about the request a line.
+    /// Costs one byte a request, so that messages have line numbers.
     void end() override {
         buffer_ += '\n';
         spill();
@@ -71,7 +71,7 @@ public:
         }
         put(']');
     }
-    /// The second time that a short one comes it gets a code.
+    /// A short string gets a code at its second occurrence.
     void text(const std::string& s) override {
         if (s.size() < 2 || s.size() > kNamed) return literal(s);
         const auto known = strings_.find(s);

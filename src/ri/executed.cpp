@@ -1,4 +1,4 @@
-// Requests as they are executed, for those who want them one by one: ReaderOptions::executed.
+// Passes requests one by one to ReaderOptions::executed as they are executed.
 #include "ri/interpreter.h"
 #include <fmt/format.h>
 #include <utility>
@@ -23,7 +23,7 @@ void Interpreter::tell(const Call& call) {
     const std::string_view name = call.request->name;
     const bool archive = name == "ReadArchive";
     if (archive && (inlineArchives_.count(call.text(0)) || locateArchive(call.text(0), call.place))) return perform(call);
-    if (name == "ArchiveBegin") return perform(call); // what is in it stands where it is read
+    if (name == "ArchiveBegin") return perform(call); // its contents are passed on when ReadArchive reads it
     if (name == "Procedural") return tellProcedural(call, call.text(0));
     if (name == "Procedural2") {
         std::string kind = call.text(0);
@@ -44,7 +44,7 @@ void Interpreter::tell(const Call& call) {
     telling_ = false;
 }
 
-/// What a procedural makes stands in attributes of its own.
+/// The contents of a procedural have a graphics state of their own.
 void Interpreter::tellProcedural(const Call& call, const std::string& kind) {
     const bool foreign = kind == "RunProgram" || kind == "DynamicLoad";
     if (foreign && !settings.allowExec) {

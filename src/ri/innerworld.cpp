@@ -40,7 +40,7 @@ bool Interpreter::innerWorld(const Call& call) {
         message += fmt::format("; {} and other options of the archive have no effect", inner_->calls.front().first->name);
         inner_->calls.clear();
         options = inner_->before;
-        for (Block& b : blocks_) // a frame of the archive gives them back
+        for (Block& b : blocks_) // FrameEnd in the archive restores them
             if (&b > innermost(BlockKind::World) && b.options) *b.options = options;
     }
     reporter.once("ri:innerworld", Severity::Warning, Rie::Nesting, call.place, message);

@@ -148,12 +148,12 @@ unsigned Interpreter::scope() const {
     return kBase;
 }
 
-/// Out of scope is executed as meant, with one warning for each request (docs/design/ri.md).
+/// Requests out of scope are executed, with one warning for each request (docs/design/ri.md).
 void Interpreter::checkScope(const Call& call) {
     const Request& r = *call.request;
     unsigned s = scope();
     if (r.scopes & s || (s == kWorld && waitsForInnerWorld(call))) return;
-    if (r.name == "WorldBegin" && inWorld()) return;                    // which says what is done
+    if (r.name == "WorldBegin" && inWorld()) return;                    // the request reports it itself
     if (r.kind == Kind::Primitive && !(s & (kWorld | kObject))) return; // emit() refuses it with an error
     sayOutOfScope(r, s, call.place);
 }

@@ -259,6 +259,7 @@ private:
 
     /// False when an archive that is read again has used up its calls.
     bool mayReplay(const Call& call);
+    /// The bound of the region of a Volume. False (reported): the arguments make none.
     bool regionOf(const Call& call, std::vector<float>& bound);
     /// A condition that does not hold, or one too deep to be asked, passes over what is in it.
     bool passesOver() const { return deepConditions_ > 0 || (!conditions_.empty() && !conditions_.back().active); }
@@ -272,9 +273,11 @@ private:
     /// Does `body`, which gives back where it ended, within archives and procedurals that are open, and closes what it leaves
     /// open.
     void inPart(const std::string& key, const std::function<SourcePlace()>& body);
+    /// Executes the requests of an archive that was parsed before.
     void executeParsed(const ParsedArchive& archive, const std::string& key, const std::string& file);
+    /// Area of a bound in the picture, in pixels; infinite behind the eye; negative: its contents cannot change the picture.
     double detailOf(const std::vector<float>& bound) const;
-    /// Makes what is in a procedural, here and now.
+    /// Expands a procedural at once.
     void makeNow(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                  const Call& call);
     // sharedarchives.cpp
@@ -284,33 +287,36 @@ private:
     bool instanceOfArchive(const std::string& name, const Call& call);
     /// Reads a DelayedReadArchive; from the second time under the same attributes on as an object.
     void readDelayed(const std::string& name, const Call& call);
+    /// When an archive is read again: notes whether it has shapes only, and whether it sets attributes.
     void learn(SharedArchive& of, const std::string& file);
     // ris.cpp
-    std::shared_ptr<scene::ShaderCall> networkCall(const Call&);
-    void oslPatterns(const Call&, const scene::ShaderCall& given, const scene::Param& named); ///< oslnetwork.cpp
-    void overrideAttributes(scene::Frame&) const;
-    void addFilters(Call& call) const;
-    void addProfile(Call& call);
-    void turnOn(int light);
+    std::shared_ptr<scene::ShaderCall> networkCall(const Call&); ///< a node of a network of patterns
+    /// A node of OSL with its patterns, as one shader.
+    void oslPatterns(const Call&, const scene::ShaderCall& given, const scene::Param& named);
+    void overrideAttributes(scene::Frame&) const; ///< at WorldEnd: lights that are on everywhere, the surface of the integrator
+    void addFilters(Call& call) const;            ///< light filters as parameters of the light
+    void addProfile(Call& call);                  ///< an IES profile as a parameter of the light
+    void turnOn(int light);                       ///< on for all primitives of the world, unless it is muted
     std::vector<std::pair<int, std::set<std::string>>> groupsOfLights(const scene::Frame& frame) const;
     void addHeadlight(scene::Frame&);
-    void risOptions(scene::Options&) const;
+    void risOptions(scene::Options&) const; ///< defaults of a scene with requests of RIS
     // unlit.cpp
-    void noteEnded(const Block&);
-    void sayUnlit(const scene::Frame&);
+    void noteEnded(const Block&);       ///< notes lights that the end of a block turns off
+    void sayUnlit(const scene::Frame&); ///< warns of lights that light no primitive
     // deferred.cpp
     /// Whether a procedural may be deferred until a ray reaches its bound; if so, adds it to the frame as a deferred one.
     bool waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& bound,
                const Call& call);
     struct Waiting;
-    using Wanted = std::function<bool(int)>; ///< whether the procedural of this number is to be made
-    void putWaiting(Waiting, std::vector<float> grown);
+    using Wanted = std::function<bool(int)>;            ///< whether the procedural of this number is to be made
+    void putWaiting(Waiting, std::vector<float> grown); ///< adds it to the frame, with its bound grown by displacement
     void nameWaiting(size_t from);
     void markPart(scene::Attributes&) const;
     void makeWaiting(const Waiting&, std::vector<scene::PrimitiveRef>& out, const Wanted&);
+    /// Copies primitives, with the contents of wanted procedurals in their place.
     void putMade(const std::vector<scene::PrimitiveRef>& from, std::vector<scene::PrimitiveRef>& out, const Wanted&);
     void orderInstances(scene::Frame&) const;
-    std::shared_ptr<scene::Frame> makeSome(const scene::Frame&, const Wanted&);
+    std::shared_ptr<scene::Frame> makeSome(const scene::Frame&, const Wanted&); ///< the frame with wanted ones expanded
     /// Whether one more program or library may make content here: how many there are and how deep they nest is bounded
     /// (reported).
     bool mayMake(const Call& call);
@@ -341,39 +347,41 @@ private:
     void tellName(std::string_view request, const SourcePlace& place);
     /// Options of an archive in the world, kept until it is known that it has no world itself.
     void tellHeld();
-    bool conditional(const Call& call);
-    bool record(const Call& call);
-    void checkScope(const Call& call);
+    bool conditional(const Call& call); ///< handles IfBegin and its kin; false for other requests
+    bool record(const Call& call);      ///< takes the request into the archive being recorded; false: none is
+    void checkScope(const Call& call);  ///< warns where the request is out of scope
     void sayOutOfScope(const Request& request, unsigned scope, const SourcePlace& place);
     // innerworld.cpp
-    std::optional<size_t> archiveInWorld() const;
+    std::optional<size_t> archiveInWorld() const; ///< index in barriers_ of the first archive that the open world reads
     /// True for options of an archive that is read inside a world: that they are out of scope is reported later or never.
     bool waitsForInnerWorld(const Call& call);
     /// To be called when an archive has ended.
     void endInnerOptions();
     /// WorldBegin in an archive that is read in a world. False: it is not.
     bool innerWorld(const Call& call);
-    unsigned scope() const;
-    void pop();
+    unsigned scope() const; ///< flags of the innermost block (requests/request.h)
+    void pop();             ///< ends the innermost block and restores what it saved
+    /// Ends blocks down to this depth, with a message for each that is open.
     void unwind(size_t depth, const SourcePlace& where, bool keepWorld);
+    /// At the end of a text: ends motion blocks, recordings and conditions that are open, with messages.
     void closeOpenEnds(size_t conditions, const SourcePlace& where);
-    void worldEnd(Block& block);
+    void worldEnd(Block& block); ///< completes the frame and passes it to the receiver
     /// A copy without lights from `stable` on, for attributes that were made in another world.
     static scene::AttributesRef withoutLights(const scene::AttributesRef& a, size_t stable);
     scene::Object forThisWorld(const StoredObject& o) const;
     void rebase(scene::Attributes& a, const scene::Transform& cameraToWorld);
     bool evaluate(const Call& call);
-    /// What a variable of IfBegin or of a text stands for; where it is not set, with `standard` what then holds.
+    /// The value of a variable of IfBegin or of a text. If it is not set: with `standard` its default, else nothing.
     std::optional<ConditionValue> variable(const std::string& name, bool standard) const;
     // variables.cpp: Option "ribparse" "varsubst"
     Call withVariables(const Call&);
     void putVariables(std::string& text, char mark, const SourcePlace&);
-    void moveTransform(const Motion& m);
-    void movePrimitive(const Motion& m);
-    void store(std::shared_ptr<scene::Primitive> p);
+    void moveTransform(const Motion& m);             ///< the transforms of a motion block become one that moves
+    void movePrimitive(const Motion& m);             ///< the primitives of a motion block become one that deforms
+    void store(std::shared_ptr<scene::Primitive> p); ///< into the open object or the frame
     scene::Param bindOne(const Call& call, const RawParam& raw, Use use, const std::string& category, bool* keep);
-    scene::Object* openObject();
-    const Block* innermost(BlockKind kind) const;
+    scene::Object* openObject();                  ///< of ObjectBegin; null outside of it
+    const Block* innermost(BlockKind kind) const; ///< null if none is open
     std::vector<scene::Light>& lights() { return frame_ ? frame_->lights : lights_; }
 
     bool shared_ = true; ///< state.attributes is referenced by a snapshot

@@ -16,9 +16,9 @@ bool startsNumber(unsigned char c) { return digit(c) || c == '-' || c == '+' || 
 bool sticks(unsigned char c) { return letter(c) || startsNumber(c); }
 constexpr size_t kBuffer = 256u << 10;    // comfortably above limits::kTokenBytes: a token always fits
 constexpr size_t kFirstBuffer = 4u << 10; // small archives may be open by the thousand
-constexpr size_t kPlainNumber = 64;       // bytes that the fast way through numbers looks at
+constexpr size_t kPlainNumber = 64;       // bytes that the fast path for numbers reads
 constexpr size_t kLineKept = 16 << 10;    // bytes of the current line kept for messages
-constexpr size_t kNotFinite = 24;         // bytes that show whether a word stands for no number
+constexpr size_t kNotFinite = 24;         // bytes that decide whether a word is nan or inf
 constexpr double kInfinite = 1e38;        // RI_INFINITY
 
 /// Bytes at p that C libraries print for what is no number, 0 for others: nan, -inf, Infinity, -nan(ind). `value`: what is taken
@@ -320,7 +320,7 @@ void Lexer::escape(std::string& out) {
     case '\\':
         out += char(c);
         break;
-    default: // names of Windows files: the backslash was meant
+    default: // names of Windows files: the backslash is kept
         out += '\\';
         out += char(c);
     }

@@ -10,7 +10,7 @@ namespace {
 
 enum Kind { IntMult = 1, Barn, Gobo, Rod, Ramp };
 
-/// Where a parameter stands in the row: `count` numbers from `at` on. `size` above 0: an array of so many, at most kFilterKnots.
+/// The place of a parameter in the row: `count` numbers from `at` on. `size` above 0: an array of so many, at most kFilterKnots.
 struct FilterParameter {
     const char* name;
     size_t at, count;

@@ -78,7 +78,7 @@ private:
         Value* v = current();
         if (!v) return false;
         if (a.form == ArgSpec::Form::String && !a.array && call_.request->parameters && (values_.size() - index_) % 2 == 0)
-            return false; // names and values of a parameter list come in pairs
+            return false; // a parameter list has pairs of names and values
         if (a.form == ArgSpec::Form::String)
             return a.array ? v->array && v->kind != Value::Kind::Numbers : v->kind == Value::Kind::Strings;
         return a.array ? v->array && v->kind != Value::Kind::Strings : v->kind == Value::Kind::Numbers;

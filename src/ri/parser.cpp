@@ -56,7 +56,7 @@ void Parser::takeBack(Call& call) {
     }
 }
 
-/// After '['. A missing ']' ends the array where something comes that cannot be in it (docs/design/ri.md).
+/// After '['. Without a ']' the array ends before the first token that it cannot hold (docs/design/ri.md).
 void Parser::array(Value& v) {
     v.array = true;
     for (;;) {

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// What the default or given screen window covers, and the larger side of a pixel on it.
+/// The screen window, set or default, and the larger side of a pixel on it.
 struct Screen {
     double left, right, bottom, top, pixel;
     explicit Screen(const scene::Options& o) {
@@ -35,7 +35,7 @@ double tangentOf(const scene::Options& o) {
     return o.projection == "perspective" ? exact::tan(std::clamp(double(o.fov), 1e-3, 179.9) * kPi / 360) : 1;
 }
 
-/// Whether a number of an attribute says so. fallback: where it says nothing.
+/// An attribute as a truth value: its first number is not 0. fallback: if the attribute is not set.
 bool says(const scene::Attributes& a, const std::string& name, bool fallback) {
     const scene::Param* p = a.value(name);
     if (!p) return fallback;
@@ -200,7 +200,7 @@ Program* Interpreter::programOf(const std::string& command, const SourcePlace& p
 }
 
 void Interpreter::leavePrograms() {
-    // Those that could not be started, or did not answer, are not asked again here either.
+    // A program that did not start or did not answer has failed before; it is not started again.
     std::erase_if(programs_, [](auto& p) {
         if (p.second) p.second->leave();
         return p.second != nullptr;

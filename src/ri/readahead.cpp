@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 constexpr std::string_view kWord = "ReadArchive";
-constexpr size_t kName = 4096;                        // bytes of a name and what stands before it
+constexpr size_t kName = 4096;                        // bytes of a name and of the text before it
 constexpr uintmax_t kHeldBytes = uintmax_t(64) << 20; // of files that are held as requests at a time
 constexpr size_t kCalls = 20'000;                     // requests of one of them; a longer one is read as it is executed
 

@@ -10,7 +10,7 @@
 namespace alpenglow::ri {
 namespace {
 
-/// Where a light of RIS stands when its shape is not what the scene draws: one across, shining along +z.
+/// The default shape of a light of RIS in its own space: width 1, shining along +z.
 struct LightShape {
     std::string_view name, requests;
 };
@@ -21,7 +21,7 @@ constexpr LightShape kGeometryShapes[] = {
     {"PxrSphereLight", "Sphere .5 -.5 .5 360"},
     {"PxrCylinderLight", "TransformBegin Rotate 90 0 1 0 Cylinder .5 -.5 .5 360 TransformEnd"},
 };
-/// Geometry that stands for a light, and draws nothing: "envsphere" and its like.
+/// Geometry that is a light and draws nothing: "envsphere" and its like.
 constexpr std::string_view kNoShapes[] = {"envsphere", "domelight", "distantlight", "envlight", "envdaylight"};
 constexpr std::string_view kFar[] = {"PxrDomeLight", "PxrDistantLight", "PxrEnvDayLight", "PxrStdEnvMapLight",
                                      "PxrStdEnvDayLight"};
@@ -81,7 +81,7 @@ void Interpreter::lightFilter(const Call& call) {
     ris_ = true;
     const scene::ParamList given = bind(call, Use::Other);
     const std::string& name = call.text(0);
-    if (name == "PxrCombinerLightFilter") return; // filters of a light are combined as each says
+    if (name == "PxrCombinerLightFilter") return; // each filter has its own way to be combined
     scene::Transform space = state.ctm;
     if (const scene::Param* p = scene::find(given, "coordsys"); p && !p->strings.empty() && !p->strings[0].empty()) {
         const auto named = namedSystem(p->strings[0]);
@@ -133,7 +133,7 @@ void Interpreter::addProfile(Call& call) {
     const std::string name = named->value.strings[0];
     const SourcePlace place = call.at(*named);
     const std::string path = locate("light profile", name, place, namedAsProfile);
-    if (path.empty()) return; // which is said
+    if (path.empty()) return; // reported by locate()
     Diagnostics said;
     const auto bytes = readWholeFile(path, limits::kShaderFileLooked, said);
     for (Diagnostic d : said.all()) reporter.error(d.code, place, d.message, d.hint);

@@ -15,7 +15,7 @@ constexpr std::string_view kPlacingRequests[] = {"Translate",       "Rotate",   
                                                  "ConcatTransform", "AttributeBegin", "AttributeEnd", "MotionEnd",
                                                  "TransformEnd",    "TransformBegin", "MotionBegin",  "version"};
 
-/// Requests that set an attribute to what they say, whatever it was before.
+/// Requests that replace an attribute whatever its value was.
 constexpr std::string_view kSettingRequests[] = {"Color",
                                                  "Opacity",
                                                  "Surface",
@@ -68,7 +68,7 @@ bool Interpreter::mayShare(const std::string& name) const {
 bool Interpreter::instanceOfArchive(const std::string& name, const Call& call) {
     if (sharedArchives_.empty() || !mayShare(name)) return false;
     const auto found = locateArchive(name, call.place);
-    if (!found) return true; // which is said: there is nothing to read
+    if (!found) return true; // reported by locateArchive(); nothing to read
     const auto known = sharedArchives_.find(found->key);
     if (known == sharedArchives_.end()) return false;
     const SharedArchive& archive = known->second;
@@ -81,7 +81,7 @@ bool Interpreter::instanceOfArchive(const std::string& name, const Call& call) {
 void Interpreter::readDelayed(const std::string& name, const Call& call) {
     const bool may = mayShare(name);
     const auto found = may ? locateArchive(name, call.place) : std::nullopt;
-    if (may && !found) return; // which is said
+    if (may && !found) return; // reported by locateArchive()
     SharedArchive* const archive = found ? &sharedArchives_[found->key] : nullptr;
     SharedArchive::Under* under = nullptr;
     if (archive && (!archive->known || archive->shapes)) {

@@ -100,7 +100,7 @@ public:
     bool finish() override { return pump(Z_FINISH) && below(to_->finish()); }
 
 private:
-    /// Until zlib has taken all that it was given, and given all that this kind of flush asks for.
+    /// Runs zlib until it has consumed its input and written all output of this kind of flush.
     bool pump(int how) {
         if (!ok_) return false;
         int r;

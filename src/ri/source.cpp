@@ -52,7 +52,7 @@ public:
         ssize_t n;
         do {
             if (!waitForBytes()) return 0;
-            n = ::read(fd_, out, size); // what is there: a pipe's requests are seen as they come
+            n = ::read(fd_, out, size); // what is available: requests of a pipe are executed at once
         } while (n < 0 && (errno == EINTR || errno == EAGAIN));
         if (n < 0) failure_ = std::string("read error: ") + std::strerror(errno);
         return n > 0 ? size_t(n) : 0;

@@ -44,7 +44,7 @@ void turned(std::string& out, std::span<const ProfilePoint> profile) {
 void swept(std::string& out, std::span<const Section> sections) {
     std::string points;
     for (const Section& s : sections) {
-        double y = -s.half; // this way round the normal leaves the tube
+        double y = -s.half; // this orientation has normals that point out of the tube
         points += fmt::format("{0} 0 {1} {0} {4} {1} {2} {4} {3} {2} 0 {3} {2} {5} {3} {0} {5} {1} {0} 0 {1} ", s.x0, s.z0, s.x1,
                               s.z1, y, -y);
     }

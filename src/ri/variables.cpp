@@ -7,7 +7,7 @@
 
 namespace alpenglow::ri {
 
-/// Puts what the variables of a text stand for in their places. mark: what begins them.
+/// Replaces the variables of a text by their values. mark: the character before a name.
 void Interpreter::putVariables(std::string& text, char mark, const SourcePlace& place) {
     const auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_' || c == ':'; };
     std::string out;

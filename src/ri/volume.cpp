@@ -84,7 +84,7 @@ void Interpreter::volume(const Call& c) {
     }
     if (!begin(BlockKind::Attribute, c)) return;
     scene::Attributes& a = attributes();
-    if (!a.interior) a.interior = std::move(a.atmosphere), a.atmosphere = nullptr; // later renderers say it so
+    if (!a.interior) a.interior = std::move(a.atmosphere), a.atmosphere = nullptr; // Atmosphere is "interior" in later renderers
     if (!a.interior)
         reporter.once("ri:emptyvolume", Severity::Warning, Rie::Incapable, c.place,
                       "a Volume without Interior or Atmosphere is empty",

@@ -20,7 +20,7 @@ double handleNumber(const std::string& text) {
 
 void argument(RibEncoder& to, const ArgSpec& a, const Argument& x) {
     using Form = ArgSpec::Form;
-    constexpr size_t kBare = 4; // numbers of a quadric or a rotation; more stand in brackets
+    constexpr size_t kBare = 4; // numbers of a quadric or a rotation; more are written in brackets
     if (a.form == Form::Handle) {
         const double d = handleNumber(x.strings[0]);
         if (std::isnan(d)) to.text(x.strings[0]);

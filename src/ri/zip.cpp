@@ -15,8 +15,8 @@ namespace {
 constexpr uint32_t kLocalRecord = 0x04034b50, kCentralRecord = 0x02014b50, kEndRecord = 0x06054b50, kEnd64 = 0x06064b50,
                    kLocator64 = 0x07064b50;
 constexpr size_t kLocalBytes = 30, kCentralBytes = 46, kEndBytes = 22, kEnd64Bytes = 56, kLocatorBytes = 20;
-constexpr size_t kComment = 65535;          // bytes of the longest comment, which stands last
-constexpr uint32_t kElsewhere = 0xffffffff; // a field whose value stands in the extension for large files
+constexpr size_t kComment = 65535;          // bytes of the longest comment, at the end of the file
+constexpr uint32_t kElsewhere = 0xffffffff; // the value of this field is in the extension for large files
 constexpr unsigned kStored = 0, kDeflated = 8;
 
 using Bytes = std::vector<uint8_t>;
@@ -84,7 +84,7 @@ bool takeLarge(const Bytes& b, size_t at, size_t n, Member& m) {
     return m.size != kElsewhere && m.packed != kElsewhere && m.at != kElsewhere;
 }
 
-/// Calls `each` with the members until it says false. False: damaged.
+/// Calls `each` for the members until it returns false. False if the directory is damaged.
 template <class Each> bool eachMember(const RandomFile& f, std::string* why, Each&& each) {
     Directory d;
     if (!f.regular()) return fail(why, "it cannot be opened, or is no file");

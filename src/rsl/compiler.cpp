@@ -276,7 +276,7 @@ KernelPtr ShaderCompiler::kernel(const ShaderPtr& shader, const KernelOptions& o
                     {p.file >= 0 && size_t(p.file) < files.size() ? files[size_t(p.file)] : shader->path(), p.line, p.column}));
             }
         }
-    } catch (const std::bad_alloc&) { // the frame is given up, not rendered without its shader
+    } catch (const std::bad_alloc&) { // fails the frame: it is not rendered without its shader
         {
             std::lock_guard lock(state_->mutex);
             state_->kernels.erase(key);

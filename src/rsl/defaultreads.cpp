@@ -6,7 +6,7 @@
 namespace alpenglow::rsl {
 
 namespace {
-/// Calls that look at the point without being given it.
+/// Calls that read the point without having it as an argument.
 bool ofSample(const Shadeop& s) {
     return !s.pure || s.lowering == Lowering::Request || s.section == "Texture" || s.name == "area" || s.name == "depth";
 }

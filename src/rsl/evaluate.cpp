@@ -178,7 +178,7 @@ Evaluation evaluate(ShaderCompiler& compiler, const std::string& setup, const st
         r.type = {};
     }
     if (!shader) {
-        // Said again, aloud, for float: an error in the expression itself is the same for every type.
+        // Compiled again with diagnostics, as float: errors in the expression itself do not depend on its type.
         compiler.loadText(source("float"), "expression", diagnostics);
         return r;
     }

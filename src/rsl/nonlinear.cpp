@@ -11,7 +11,7 @@ namespace alpenglow::rsl {
 
 namespace {
 
-/// What is asked of the light transport, as who writes shaders calls it.
+/// The name of a request to the light transport, as users write it in shaders.
 std::string spoken(const std::string& op) {
     if (op == "lightvisibility") return "the light of an illuminance loop";
     return "the result of " + op + "()";

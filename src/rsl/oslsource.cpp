@@ -11,7 +11,7 @@ std::optional<std::string> findOsl(const std::string& name, const std::vector<st
     const std::filesystem::path path = name;
     const bool named = path.extension() == ".osl" || path.extension() == ".oso";
     auto found = findFile((named ? std::filesystem::path(path).replace_extension() : path).string() + ".osl", directories);
-    if (!found || !followedPath(found->path).ends_with(".osl")) return {}; // a link: words of others would stand in messages
+    if (!found || !followedPath(found->path).ends_with(".osl")) return {}; // a link could make messages quote any file
     return found->path;
 }
 

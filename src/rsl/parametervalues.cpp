@@ -1,4 +1,4 @@
-// The values of a shader's parameters: what is given, and defaults, which are computed.
+// The values of a shader's parameters: those of the instance, and computed defaults.
 #include "rsl/compilerstate.h"
 #include "rsl/front/protocol.h"
 #include "rsl/ir/build.h"
@@ -104,7 +104,7 @@ std::shared_ptr<const CompiledKernel> codeOfDefaults(ir::Kernel& k, const Kernel
     return code;
 }
 
-/// Puts the results of a kernel of defaults where its outputs say.
+/// Stores the results of a kernel of defaults in the parameters that its outputs name.
 void takeDefaults(const ir::Kernel& k, const std::vector<std::vector<float>>& numbers, std::vector<ParameterValue>& values) {
     for (size_t o = 0; o < numbers.size(); o++) {
         const OutputName output = OutputName::parse(k.outputs[o].name);

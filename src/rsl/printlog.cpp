@@ -144,7 +144,7 @@ void PrintLog::writeRest(const Calls& written, PrintKey point) {
 void PrintLog::write() {
     sort();
     struct Source {
-        std::FILE* file; ///< null: the messages in memory, which are the last to have come
+        std::FILE* file; ///< null: the messages in memory, which are the newest
         size_t next = 0;
         Message head{};
     };

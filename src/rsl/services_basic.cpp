@@ -43,7 +43,7 @@ std::string general(float v, int precision, bool sign) {
     std::snprintf(text, sizeof text, sign ? "%+.7g" : "%.7g", double(v));
     std::string plain = text;
     if (!std::isfinite(v) || plain.find('e') != std::string::npos) return plain;
-    std::string power = number(double(v), 'e', 6, sign); // 1.000000e+05: without what says nothing it may be shorter
+    std::string power = number(double(v), 'e', 6, sign); // 1.000000e+05: shorter once trailing zeros are removed
     const size_t e = power.find('e');
     size_t end = e;
     while (end > 0 && power[end - 1] == '0') --end;
@@ -211,7 +211,7 @@ std::string formatText(const std::string& pattern, const std::vector<FormatValue
 
 namespace {
 
-/// Patterns by their texts: a shader asks for the same ones at every point.
+/// Compiled patterns by text: a shader uses the same ones at every point.
 struct Patterns {
     struct Entry {
         std::shared_ptr<const Pattern> pattern;
@@ -245,7 +245,7 @@ bool matchText(const std::string& pattern, const std::string& subject, std::stri
         std::string pattern, subject;
         bool found;
     };
-    thread_local std::optional<Answer> last; // shaders ask the same at point after point
+    thread_local std::optional<Answer> last; // consecutive points mostly repeat the query
     if (last && last->pattern == pattern && last->subject == subject) return last->found;
     const Patterns::Entry e = patterns().get(pattern);
     if (!e.pattern) {
@@ -333,7 +333,7 @@ void BasicCall::inCategories() {
     each([&](int l) { put(0, l, inCategory(arguments(l).string(), site_.strings[1]) ? 1 : 0); });
 }
 
-/// What the builder could only say about a way through the shader.
+/// Messages about code that the builder could not exclude: reported when a point reaches it.
 void BasicCall::complaint() {
     if (!mask_) return;
     Arguments a = arguments(std::countr_zero(mask_));

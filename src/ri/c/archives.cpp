@@ -18,7 +18,7 @@ void builtIn(const char* kind, RtPointer data, int strings, const RtFloat* bound
         .run();
 }
 
-/// What a format and its arguments come to.
+/// The text that a format makes of its arguments.
 std::string printed(const char* format, va_list list) {
     va_list again;
     va_copy(again, list);

@@ -20,7 +20,7 @@ RibWriter& RibTarget::writer(bool headed) {
     return *writer_;
 }
 
-/// Option "rib" is about the file and does not stand in it.
+/// Option "rib" is about the file and is not written to it.
 bool RibTarget::formatOption(const Call& call) {
     if (call.request->name != "Option" || call.text(0) != "rib") return false;
     for (const RawParam& p : call.params) {

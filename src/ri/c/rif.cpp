@@ -159,7 +159,7 @@ private:
         reporter_.error(Rie::System, c.place, fmt::format("{}: filter \"{}\" threw{}", c.request->name, path_, what),
                         "the request is left out");
     }
-    /// The light that requests call so. One that has passed by the filter gets a handle when it is asked for.
+    /// The light of this name. A light that was declared before the filter gets a handle at its first use.
     RtPointer handleOf(const std::string& text) {
         RtPointer& h = handles_[text];
         if (!h) {

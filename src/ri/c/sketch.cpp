@@ -15,7 +15,7 @@ constexpr std::pair<std::string_view, std::string_view> kBlocks[] = {
     {"MotionBegin", "MotionEnd"},       {"ResourceBegin", "ResourceEnd"},
     {"ArchiveBegin", "ArchiveEnd"},     {"IfBegin", "IfEnd"}};
 
-/// Blocks at whose end the attributes come back that held at their beginning.
+/// Blocks whose end restores the attributes of their beginning.
 bool keepsAttributes(std::string_view begin) {
     return begin != "TransformBegin" && begin != "MotionBegin" && begin != "ResourceBegin" && begin != "IfBegin";
 }

@@ -19,13 +19,13 @@ void oneText(const char* request, const char* s) { Building(request).text(s).run
 void someNumbers(const char* request, const RtFloat* f, int64_t n) { Building(request).numbers(f, n).run(); }
 void someNumbers(const char* request, std::initializer_list<RtFloat> f) { someNumbers(request, f.begin(), int64_t(f.size())); }
 
-/// Colours have as many components as ColorSamples says.
+/// Colours have as many components as ColorSamples sets.
 void color(const char* request, const RtFloat* c) {
     Building b(request);
     if (b.client()) b.numbers(c, b.client()->to.colorSamples()).run();
 }
 
-/// The name that a program gives to a light itself, by "string __handleid"; it is taken out of the list.
+/// The name that a program sets for a light by "string __handleid", which is removed from the list.
 std::optional<std::string> ownHandle(std::vector<RtToken>& tokens, std::vector<RtPointer>& values) {
     for (size_t i = 0; i < tokens.size(); ++i) {
         const std::string_view token = tokens[i] ? tokens[i] : "";

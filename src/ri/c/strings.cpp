@@ -16,7 +16,7 @@ size_t peek(uintptr_t from, char* to, size_t n) {
     return got < 0 ? 0 : size_t(got);
 }
 
-/// Whether this system lets a process ask about its own memory; where it does not, addresses are taken for what they should be.
+/// Whether the system can tell which memory is readable. If it cannot, addresses are assumed to be valid.
 bool canPeek() {
     static const bool can = [] {
         const char here = 'x';

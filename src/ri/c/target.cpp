@@ -26,7 +26,7 @@ void subdivideHere(Target& to, const std::function<void(float)>& make, const Cal
 }
 
 void InterpreterTarget::execute(const Call& call) {
-    if (held_) (void)held_->note(call); // the interpreter tells what is wrong when it executes them
+    if (held_) (void)held_->note(call); // the interpreter reports errors when it executes them
     in_.execute(call);
     executed();
 }

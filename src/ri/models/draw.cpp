@@ -80,7 +80,7 @@ void Interpreter::drawModel(const std::string& name, const Call& call, const sce
     for (const scene::Primitive& part : model->parts) {
         scene::Primitive p = part;
         for (scene::Param& v : p.params) v.place = call.place;
-        for (const scene::Param& c : constants) { // what the request says counts
+        for (const scene::Param& c : constants) { // the request overrides the file
             std::erase_if(p.params, [&](const scene::Param& v) { return v.name == c.name; });
             p.params.push_back(c);
         }

@@ -122,7 +122,7 @@ bool PlyReader::elements(const PlyElement& e) {
         face_ = &e;
         faceColumns_.resize(e.properties.size());
     }
-    if (e.properties.empty()) return true; // nothing stands for them
+    if (e.properties.empty()) return true; // an element without data
     PlyRow r;
     for (double k = 0; k < e.count; ++k) {
         if (!file_.row(e, r)) {
@@ -180,7 +180,7 @@ std::optional<std::vector<float>> opacities(const PlyElement& e, const std::vect
     return any ? std::optional(out) : std::nullopt;
 }
 
-/// Numbers that have no meaning of their own here: shaders may ask for them by name.
+/// Other properties become primitive variables of their name, for shaders.
 void others(const PlyElement& e, const std::vector<std::vector<float>>& columns, Class cls, scene::Primitive& out) {
     static const char* const taken[] = {"x",
                                         "y",

@@ -10,7 +10,7 @@ namespace {
 
 constexpr unsigned kAttributes = kAnywhere;
 
-/// Three numbers, or as many as ColorSamples says. One number of three is a grey, with a warning.
+/// Three numbers, or as many as ColorSamples sets. One number instead of three is a grey, with a warning.
 bool colorOf(Interpreter& in, const Call& c, Color& out) {
     size_t n = in.nRGB.empty() ? 3 : in.nRGB.size() / 3;
     std::vector<double> v(c.numbers(0).begin(), c.numbers(0).end());

@@ -112,7 +112,7 @@ void quantize(Interpreter& in, const Call& c) {
     scene::Quantize q{c.real(1), c.real(2), c.real(3), c.real(4), true};
     if (c.text(0) == "rgba" || c.text(0) == "rgb" || c.text(0) == "a") in.options.quantizeRgba = q;
     else if (c.text(0) == "z") in.options.quantizeZ = q;
-    else // an output of its own: PRMan takes any name, and its display can say it too
+    else // PRMan takes any variable; here a Display of it has "quantize"
         in.reporter.report(Severity::Warning, Rie::BadToken, c.place, fmt::format("Quantize: \"{}\" is not known", c.text(0)),
                            "rgba or z; a Display of its own takes \"quantize\"");
 }
@@ -165,7 +165,7 @@ void colorSamples(Interpreter& in, const Call& c) {
     in.nRGB = n == identity ? std::vector<double>() : n;
 }
 
-/// "~" at the start of a folder and $NAME or ${NAME} anywhere, as shells have them; what the environment lacks stays as it is.
+/// "~" at the start of a folder and $NAME or ${NAME} anywhere, as shells have them; variables that are not set are kept as text.
 std::string withEnvironment(const std::string& path) {
     std::string out;
     auto letter = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; };
@@ -198,11 +198,11 @@ void option(Interpreter& in, const Call& c) {
     const std::string& category = c.text(0);
     for (scene::Param& p : in.bind(c, Use::Option, category)) {
         std::string key = category + ":" + p.name;
-        if (category == "searchpath" && !p.strings.empty()) { // "&" stands for the value so far
+        if (category == "searchpath" && !p.strings.empty()) { // "&" is the value so far
             std::string before, now;
             if (auto i = in.options.values.find(key); i != in.options.values.end() && !i->second.strings.empty())
                 before = i->second.strings[0];
-            // Some give a folder each: the same as one text with ':' between.
+            // An array of folders is the same as one text with ':' between them.
             for (size_t k = 1; k < p.strings.size(); ++k) p.strings[0] += ":" + p.strings[k];
             p.strings.resize(1);
             p.arrayLength = 0;

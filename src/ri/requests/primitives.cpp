@@ -134,7 +134,7 @@ void geometry(Interpreter& in, const Call& c) {
                 continue;
             }
             const bool one = p.cls == scene::Class::Constant || p.cls == scene::Class::Uniform;
-            if (one) p.cls = scene::Class::Constant; // the shape is one thing to who names it
+            if (one) p.cls = scene::Class::Constant; // per-shape values are constant for the whole primitive
             if (one) everywhere.push_back(std::move(p));
             else in.incapable(c, "Geometry \"" + name + "\" has no variables but constant and uniform ones");
         }

@@ -9,7 +9,7 @@ namespace alpenglow::rsl {
 
 namespace {
 
-/// Words of other languages, and what stands there in this one.
+/// Words of other languages, and what RSL has instead.
 struct Borrowed {
     const char* word;
     const char* instead;
@@ -27,7 +27,7 @@ bool isTriple(const std::string& type) { return type == "color" || type == "poin
 bool is(const Raised& r, const MessageText& text) { return r.message == &text; }
 bool is(const Raised& r, const MessageKind& kind) { return &r.message->kind == &kind; }
 
-/// A value of one kind of triples where another one is wanted: a conversion is allowed, and says so. Else nothing.
+/// The hint for a triple of one kind where another kind is expected: write the conversion. Empty for other types.
 struct Unlike {
     std::string there, wanted;
 };
@@ -39,7 +39,7 @@ Unlike unlike(const Raised& r) {
     return u;
 }
 
-/// The operator of this language that a word of others stands for; or null.
+/// The operator of RSL for a word of another language; null if there is none.
 const char* operatorOf(const std::string& word) {
     const auto b = std::ranges::find_if(kOperators, [&](const Borrowed& o) { return word == o.word; });
     return b == std::end(kOperators) ? nullptr : b->instead;
@@ -49,7 +49,7 @@ bool operatorFits(const Raised& r) { return is(r, msg::kExpectedSemicolonBefore)
 
 } // namespace
 
-/// What stands between the quotes of "did you mean 'x'?", either kind of quotes; or nothing.
+/// The name in "did you mean 'x'?", in either kind of quotes; empty if there is none.
 std::string suggestion(const std::string& hint) {
     constexpr std::string_view kHead = "did you mean ";
     if (hint.compare(0, kHead.size(), kHead) != 0 || hint.size() < kHead.size() + 3) return {};

@@ -34,7 +34,7 @@ std::vector<Checker::ParameterView> Checker::views(const Function& f) {
     return v;
 }
 
-/// The type that the argument is wanted as: of two that the parameter takes that which it has.
+/// The type to which the argument is resolved. A parameter that takes strings and handles takes the argument's own type.
 Type Checker::wantedType(const ParameterView& p, const Expr& argument) const {
     if (!p.anyText) return p.type;
     const Base other = p.type.base == Base::String ? Base::Shader : Base::String;
@@ -46,7 +46,7 @@ Type Checker::wantedType(const ParameterView& p, const Expr& argument) const {
     return {isOther(list ? infos_.at(argument.args[0].get()) : info) ? other : p.type.base, p.type.array};
 }
 
-/// What it costs to give this argument to a parameter of that type; kNever if it cannot be.
+/// The cost of passing this argument to a parameter of that type; kNever if it does not convert.
 int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool ignoreOutputs) {
     const Info& info = infos_.at(&argument);
     if (info.any) return 0;
@@ -244,7 +244,7 @@ void Checker::inferResults(const Expr& e, Info& info) {
         int& cost = info.cost[int(c.result.base)];
         cost = std::min(cost, c.cost);
     }
-    // Of a call that can give one value or several, the single value is chosen unless an array is wanted.
+    // A call with forms that return one value and forms that return an array returns one value unless an array is expected.
     if (info.array.array && std::ranges::any_of(info.cost, [](int c) { return c < kNever; })) info.array = {};
     if (!info.array.array) info.either = eitherOf(e, info, infos_);
 }
@@ -314,7 +314,7 @@ void Checker::bestByArguments(std::vector<Choice>& choices) {
     });
 }
 
-/// The other way about: an array is wanted.
+/// An array is expected: among the forms of the call those that return one are taken.
 void Checker::preferArray(const Expr& e, Type wanted) {
     Info& info = infos_.at(&e);
     if (info.array.array || info.any) return;
@@ -360,7 +360,7 @@ void Checker::resolveCall(ExprPtr& pointer, Type result) {
             a = std::move(name);
         } else {
             resolveTypes(a, wantedType(p, *a));
-            // printf("%s", h->name): what another shader gives, of whatever type it is.
+            // printf("%s", h->name): the type of another shader's member is known when the kernel is built.
             const bool element = a->kind == ExprKind::Index && a->args[0]->kind == ExprKind::Member;
             const bool member = a->kind == ExprKind::Member || a->kind == ExprKind::Method || element;
             if (member && p.type.base == Base::Void && choice.shadeop && choice.shadeop->section == "Strings")
@@ -368,7 +368,7 @@ void Checker::resolveCall(ExprPtr& pointer, Type result) {
         }
     }
     resolvePairs(e, choice.positional, choice.shadeop);
-    // A shadeop with a result that is an array of open length gets the length that is wanted.
+    // A result of open length takes the expected length.
     e.type = choice.result.array < 0 && result.array > 0 ? result : choice.result;
     finish(e);
     for (const auto& p : e.pairs) e.varying |= p.value->varying;

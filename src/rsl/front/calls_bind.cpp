@@ -68,7 +68,7 @@ bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
 /// outputchannel() and writeaov() make an output of that name.
 void Checker::bindChannel(const Expr& e) {
     const Type type = e.args[1]->type;
-    const bool written = e.args[0]->kind == ExprKind::String; // else it is any name that displays ask for
+    const bool written = e.args[0]->kind == ExprKind::String; // else it can be any name that displays request
     const std::string name = written ? ChannelName::parse(e.args[0]->text).name : kAnyChannel + toString(type);
     const bool parameter = written && shaderParameters_.count(name) > 0;
     if (type.array < 0 && !parameter) {
@@ -263,7 +263,7 @@ void Checker::resolvePairs(Expr& e, size_t positional, const Shadeop* op) {
             names.push_back(o.name);
             if (o.name == pair.name) optional = &o;
         }
-        // A space is named, or given as a matrix: PRMan takes what stands there.
+        // A space is a name or, as in PRMan, a matrix.
         const bool space =
             optional && optional->type == Type{Base::String, 0} && pair.name.ends_with("space") && cheapest(info) == Base::Matrix;
         if (info.any || space) {
@@ -275,7 +275,7 @@ void Checker::resolvePairs(Expr& e, size_t positional, const Shadeop* op) {
             if (pair.name.find(':') == std::string::npos && !channels && op->lowering != Lowering::Unavailable)
                 sources_.report(pair.place, msg::kNoSuchParameter(op->name, pair.name),
                                 near.empty() ? "" : "did you mean \"" + near + "\"?");
-            pair.output = op->name == "texture3d" && isVariable(*value); // what is read from the file goes there
+            pair.output = op->name == "texture3d" && isVariable(*value); // filled from the file
             if (pair.output) {
                 resolveVariable(value);
                 written(*value);

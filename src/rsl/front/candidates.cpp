@@ -23,7 +23,7 @@ struct Written {
     bool structure;
 };
 
-/// `wholeAt(i)`: what the i-th of them says of a structure that begins there.
+/// `wholeAt(i)`: Whole of the i-th, which describes the structure that begins there, if one does.
 template <class F> std::vector<Written> asWritten(size_t count, F wholeAt) {
     std::vector<Written> all;
     for (size_t i = 0; i < count;) {

@@ -80,7 +80,7 @@ bool sameForAll(const Expr& e, Known& known) {
         }
         if (!answer->second.same) return false;
         const auto& parameters = e.function->parameters;
-        for (size_t i = 0; i < std::min(e.args.size(), parameters.size()); ++i) // those that are what they are given
+        for (size_t i = 0; i < std::min(e.args.size(), parameters.size()); ++i) // parameters of the class of their argument
             if ((parameters[i]->storage == Storage::Uniform || answer->second.needs.count(parameters[i])) &&
                 !sameForAll(*e.args[i], known))
                 return false;
@@ -98,12 +98,12 @@ void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     if (value.kind == ExprKind::Variable && !value.symbol) return; // in the place of an error
     const Expr& whole = value.kind == ExprKind::Index ? *value.args[0] : value;
     if (whole.kind == ExprKind::Member || whole.kind == ExprKind::Method)
-        return; // what a handle gives is of the class that is wanted
+        return; // members of other shaders take the expected class
     if (Known known{unclassed_}; sameForAll(value, known)) return;
     sources_.report(value.place, msg::kVaryingToUniform(s.name));
 }
 
-/// `T x = value`, where x may be an array whose length comes from the value.
+/// `T x = value`, where x may be an array that takes its length from the value.
 void Checker::initialise(Symbol& s, ExprPtr& value) {
     if (s.type.base == Base::Void) {
         value.reset();
@@ -271,7 +271,7 @@ void Checker::statementPair(Stmt& s, ExprPtr token, ExprPtr value) {
 
 namespace {
 
-/// A statement about light: what it is called, where it may stand, and its arguments before pairs.
+/// A statement about light: its name, the kinds of shaders that allow it, its arguments before the pairs.
 struct LightForm {
     StmtKind kind;
     const char* name;

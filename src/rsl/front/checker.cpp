@@ -9,7 +9,7 @@ namespace alpenglow::rsl::front {
 
 void Checker::run() {
     for (auto& s : main_.shaders) checkShader(*s);
-    // Callers usually stand behind what they call: from the end, so that a helper of an uncalled function is not checked twice.
+    // Callers usually follow what they call. Going backwards checks the helpers of an uncalled function once.
     for (size_t i = main_.functions.size(); i-- > 0;) {
         Function& f = *main_.functions[i];
         // A header's functions that are not called cannot do harm; those of the main file are checked on their own.

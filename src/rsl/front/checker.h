@@ -58,35 +58,39 @@ private:
 
     // program and functions (checker.cpp)
     void checkShader(Shader&);
+    /// A function that no shader calls: any predefined variable is allowed, and its errors are warnings.
     void checkStandalone(Function&);
+    /// The copy of a function for the shader being checked, made and checked at its first call. Null after an error.
     Function* instance(Function& definition, const Unit& unit, const std::pair<std::string, std::string>& rename, Place call);
     void checkBody(Function&);
-    const Unit& rslUnit(const Shadeop&);
-    Symbol* lookup(const std::string&);
-    Symbol* global(const std::string&);
-    void bindExtern(Symbol&);
-    void declareLocal(Symbol&);
-    Symbol* tolerated(Expr&);
-    void unknownVariable(Expr&);
+    const Unit& rslUnit(const Shadeop&); ///< the parsed text of a shadeop written in RSL
+    Symbol* lookup(const std::string&);  ///< in the open scopes, then global(); null if there is none
+    Symbol* global(const std::string&);  ///< a predefined variable, which becomes a symbol of the shader at its first use
+    void bindExtern(Symbol&);            ///< `extern`: enters the outer variable into the innermost scope
+    void declareLocal(Symbol&);          ///< enters a local variable into the innermost scope
+    Symbol* tolerated(
+        Expr&); ///< a parameter of the shader, or a variable of other kinds of shaders, that is not declared here; else null
+    void unknownVariable(Expr&); ///< reports, with the nearest name
     std::vector<std::string> visibleNames();
 
     // statements (check_statements.cpp)
     void check(StmtPtr&);
     void checkDeclare(Stmt&);
-    void checkLight(Stmt&);
+    void checkLight(Stmt&); ///< illuminance, illuminate, solar, gather
     size_t lightPositions(Stmt&, std::vector<ExprPtr>& given);
     bool isGivenString(const std::vector<ExprPtr>& given, size_t i) const;
     void checkReturn(Stmt&);
     void checkLightBody(Stmt&);
     void checkLoopBody(Stmt&);
-    void condition(ExprPtr&);
-    void valueOf(ExprPtr&, Type);
-    void whole(ExprPtr&);
+    void condition(ExprPtr&);     ///< an expression that must be true or false
+    void valueOf(ExprPtr&, Type); ///< an expression that is converted to the type
+    void whole(ExprPtr&);         ///< an expression of any type
     void initialise(Symbol&, ExprPtr&);
-    void assignedToUniform(const Symbol&, const Expr&);
-    static bool endsInReturn(const Stmt&);
+    void assignedToUniform(const Symbol&, const Expr&); ///< warns if the value is varying
+    static bool endsInReturn(const Stmt&);              ///< whether every path through it returns
 
     // infer (infer.cpp, calls.cpp)
+    /// Fills infos_ for the expression and its parts. The reference stays valid until infos_ is cleared.
     Info& infer(Expr&);
     void inferVariable(Expr&, Info&);
     void inferIndex(Expr&, Info&);
@@ -99,30 +103,31 @@ private:
     struct Candidates;
     void inferCall(Expr&, Info&);
     void inferResults(const Expr& call, Info&);
-    void unknownFunction(const Expr& call);
-    void inferMember(Expr&, Info&);
+    void unknownFunction(const Expr& call); ///< reports, with the nearest name
+    void inferMember(Expr&, Info&);         ///< members and methods of other shaders
+    /// Whether the call fits the parameters; fills cost and positional of the choice.
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, const ParameterView& wanted, bool ignoreOutputs);
     Type wantedType(const ParameterView&, const Expr& argument) const;
-    static void bestByArguments(std::vector<Choice>&);
+    static void bestByArguments(std::vector<Choice>&); ///< removes choices that others beat by their arguments
     void preferArray(const Expr&, Type wanted);
     void noMatch(Expr& call, const std::vector<std::string>& candidates, std::vector<std::string> notes, bool outputsOnly);
     std::string signatureText(const Function&) const; ///< as the shader writes it, structures by their names
     /// Why these parameters do not fit the call, in words; "" when they do.
     std::string whyNot(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call);
-    std::string describe(Expr&);
+    std::string describe(Expr&);       ///< the type of an inferred expression, for messages
     static bool isNumber(const Info&); ///< it can be nothing else, but for a last resort
     static const Expr* eitherOf(const Expr& call, const Info&, const std::unordered_map<const Expr*, Info>&);
     void becomesTuple(const Info&, const Expr& settled, Base wanted);
     static std::string componentHint(Base tuple);
-    static Base cheapest(const Info&);
-    static int costTo(const Info&, Base to);
+    static Base cheapest(const Info&);       ///< Void if it can be no single value
+    static int costTo(const Info&, Base to); ///< implicit conversion included; kNever if there is none
     static int operandCost(ExprOp, const Operation&, const Info& left, Base leftAs, const Info& right, Base rightAs);
-    bool isVariable(const Expr&) const;
-    bool isText(const Expr&) const;
-    void madeName(Expr& call, size_t at, const Shadeop&);
-    void statementPair(Stmt&, ExprPtr token, ExprPtr value);
-    void poison(Expr&, Info&);
+    bool isVariable(const Expr&) const;                      ///< a variable or an element of one
+    bool isText(const Expr&) const;                          ///< a string, possibly computed
+    void madeName(Expr& call, size_t at, const Shadeop&);    ///< a pair whose token is computed
+    void statementPair(Stmt&, ExprPtr token, ExprPtr value); ///< a pair of illuminance or gather
+    void poison(Expr&, Info&);                               ///< after an error: the expression fits everywhere
 
     // resolveTypes (resolve.cpp, calls.cpp)
     void resolveTypes(ExprPtr&, Type); ///< to this type, with conversions
@@ -149,40 +154,42 @@ private:
     void bindText(Expr&, const Choice&);
     std::pair<std::string, std::string> checkTextPairs(const Expr&);
     bool uniformResult(const Expr&, const Choice&) const;
-    void convert(ExprPtr&, Type);
-    void written(const Expr& variable);
+    void convert(ExprPtr&, Type);       ///< wraps the expression in a Cast unless it has the type
+    void written(const Expr& variable); ///< reports a store into a variable that is read-only
     void readsPoint(const Expr&, const std::string& what, bool differs = true);
     bool inConstruct() const;
-    void finish(Expr&);
+    void finish(Expr&); ///< sets `varying` from the parts
 
     SourceSet& sources_;
-    Unit& main_;
+    Unit& main_; ///< its shaders move to program_ at the end
     Program& program_;
     // the shader being checked
     Shader* shader_ = nullptr;
-    std::optional<ShaderKind> kind_; ///< none in a function that no shader calls
-    std::vector<std::unique_ptr<Symbol>>* globalOwner_ = nullptr;
+    std::optional<ShaderKind> kind_;                              ///< none in a function that no shader calls
+    std::vector<std::unique_ptr<Symbol>>* globalOwner_ = nullptr; ///< owns the symbols of global()
     std::unordered_map<std::string, Symbol*> globals_, shaderParameters_;
-    std::map<std::pair<const Function*, std::string>, Function*> instances_;
-    std::unordered_set<const Function*> checking_, used_, varyingFunctions_;
-    std::set<const Symbol*> unclassed_; ///< parameters of functions that are neither uniform nor varying: what they are given
+    std::map<std::pair<const Function*, std::string>, Function*> instances_; ///< by function as parsed and renamed shadeop
+    std::unordered_set<const Function*> checking_;                           ///< those on the way to here: a call is recursion
+    std::unordered_set<const Function*> used_;                               ///< as parsed, called by some shader
+    std::unordered_set<const Function*> varyingFunctions_;                   ///< their results vary whatever their arguments are
+    std::set<const Symbol*> unclassed_; ///< parameters of functions of no class, which take that of the argument
     std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
-    std::set<const Shadeop*> reportedUnavailable_;
-    std::set<const Symbol*> toldNotOutput_; ///< parameters that are assigned though they are not output: reported once
+    std::set<const Shadeop*> reportedUnavailable_; ///< reported once
+    std::set<const Symbol*> toldNotOutput_;        ///< parameters that are assigned though they are not output: reported once
     struct MadeNumber {
         std::string name;
         Base wanted;
     };
     std::map<std::array<int, 3>, MadeNumber> madeNumbers_; ///< by place, for warnOfNumbers()
     // the function being checked
-    const Unit* unit_ = nullptr;
-    Function* function_ = nullptr;
-    std::vector<Scope> scopes_;
-    int loops_ = 0;
-    int instanceDepth_ = 0;
-    std::map<const Function*, int> callHeight_; ///< how deep the calls inside of a function are nested
-    bool foreignLight_ = false;                 ///< in the block of a light in another kind of shader, which has been reported
-    std::unordered_map<const Expr*, Info> infos_;
+    const Unit* unit_ = nullptr;                  ///< whose functions it sees
+    Function* function_ = nullptr;                ///< null in the body of a shader
+    std::vector<Scope> scopes_;                   ///< the innermost is last
+    int loops_ = 0;                               ///< around the current statement
+    int instanceDepth_ = 0;                       ///< calls of instance() that have not returned
+    std::map<const Function*, int> callHeight_;   ///< how deep the calls inside of a function are nested
+    bool foreignLight_ = false;                   ///< in the block of a light in another kind of shader, which has been reported
+    std::unordered_map<const Expr*, Info> infos_; ///< of the current whole expression
 };
 
 } // namespace alpenglow::rsl::front

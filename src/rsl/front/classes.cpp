@@ -14,7 +14,7 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
-/// A method that the renderer runs, in which kind of shader, and the variables it is given, in order.
+/// A method that the renderer runs: the kind of shader, and the variables that it passes, in order.
 struct Entry {
     ShaderKind kind;
     const char* name;
@@ -98,7 +98,7 @@ private:
         return std::any_of(entries().begin(), entries().end(), [&](const Entry& e) { return name == e.name; });
     }
 
-    /// Methods may stand in any order, so a circle among them is found here.
+    /// Methods may call methods that follow in the text, so recursion is detected here.
     bool recursive() {
         bool found = false;
         std::map<std::string, int> state, height;
@@ -158,7 +158,7 @@ private:
             if (!b->definition) body.push_back(std::move(b));
             else if (wanted.count(b->definition->name)) methods.push_back(std::move(b));
         }
-        // What is called stands before what calls it.
+        // Callees precede their callers.
         const auto rank = [&](const StmtPtr& m) {
             return std::find(order_.begin(), order_.end(), m->definition->name) - order_.begin();
         };
@@ -182,7 +182,7 @@ private:
     StmtPtr call(Shader& s, const std::string& name, const std::vector<const char*>& variables) {
         const Function& f = *method(name);
         const auto optional = [&](size_t i) { return i < f.defaults.size() && f.defaults[i]; };
-        // Lights that only other shaders ask have parameters of any kind: the third need not be Ol.
+        // The third parameter of a light() for other shaders need not be Ol.
         size_t known = std::min(f.parameters.size(), variables.size());
         while (known > 0 && optional(known - 1)) --known;
         if (name == "light" && known == 3 && f.parameters[2]->type != Type{Base::Color, 0}) known = 2;
@@ -195,7 +195,7 @@ private:
                 continue;
             }
             const Symbol& p = *f.parameters[i];
-            const bool irradiance = isHalf(name) && i == 2; // Ii, which the renderer does not want
+            const bool irradiance = isHalf(name) && i == 2; // Ii, which the renderer ignores
             if (!optional(i) && name != "light" && !irradiance) {
                 sources_.report(f.place, msg::kMethodParameters(name, counted(variables.size(), "parameter")));
                 return make(StmtKind::Block, f.place);

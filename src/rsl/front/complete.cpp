@@ -26,7 +26,7 @@ int tokenLength(const std::string& line, size_t at) {
     return int(end - at);
 }
 
-/// The name of a call and its arguments, as far as they stand on this line.
+/// The name of a call and those of its arguments that are on this line.
 int callLength(const std::string& line, size_t at) {
     size_t end = at + size_t(tokenLength(line, at));
     while (end < line.size() && line[end] == ' ') ++end;

@@ -161,7 +161,7 @@ void Checker::inferMember(Expr& e, Info& info) {
         info.any = true;
         return;
     }
-    // What it gives is known when the shader is bound: here it is what is wanted.
+    // Its type is known when the shader is bound. Until then it has the expected type.
     for (Base b : kAll) info.cost[int(b)] = b == Base::Float ? 0 : b == Base::Bool ? kNever : 1;
 }
 
@@ -211,7 +211,7 @@ void Checker::inferIndex(Expr& e, Info& info) {
         info.any = true;
         return;
     }
-    const bool ofHandle = e.args[0]->kind == ExprKind::Member; // an element of an array or a component: what is wanted
+    const bool ofHandle = e.args[0]->kind == ExprKind::Member; // an element or a component, of the expected type
     if (costTo(index, Base::Float) >= kNever) {
         sources_.report(e.args[1]->place, msg::kBadIndex(describe(*e.args[1])));
         info.any = true;
@@ -293,7 +293,7 @@ void Checker::inferBinary(Expr& e, Info& info) {
             if (r.cost[int(b)] >= kNever) continue;
             if (const auto o = operation(e.op, a, b)) {
                 int& c = info.cost[int(o->result)];
-                // A truth is a truth: how it was come by chooses nothing around it.
+                // The cost of operands does not influence what surrounds a truth value.
                 c = o->result == Base::Bool
                         ? 0
                         : std::min(c, sum(sum(l.cost[int(a)], r.cost[int(b)]), operandCost(e.op, *o, l, a, r, b)));

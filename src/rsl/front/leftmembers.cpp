@@ -10,7 +10,7 @@ namespace {
 
 using Symbols = std::set<const Symbol*>;
 
-/// What the calls of a shader's body that `wanted` names do, with everything that they call.
+/// The effects of those calls in a shader's body that `wanted` names, callees included.
 struct Deeds {
     Symbols used, written;
     bool looks = false; ///< at the place of the sample, which a displacement moves

@@ -70,7 +70,7 @@ void Lexer::skipBlank(Token& t) {
     }
 }
 
-/// Takes bytes that `accept` takes, over joined lines if the token goes on behind them.
+/// Reads bytes that `accept` accepts, across joined lines.
 void Lexer::takeWhile(bool (*accept)(int)) {
     for (;;) {
         size_t k = pos_;
@@ -104,7 +104,7 @@ void Lexer::scanNumber() {
             takeWhile(isDigit);
         }
     }
-    takeWhile(isWordByte); // letters that do not belong here; the parser says so
+    takeWhile(isWordByte); // invalid letters, which the parser reports
 }
 
 /// Whether the string ends on its line.

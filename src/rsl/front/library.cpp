@@ -11,7 +11,7 @@ struct Mentioned {
     bool named = false, defined = false;
 };
 
-/// What a text says about a name of the library. Variables may have the names of functions; these count only where they are
+/// How a text uses a name of the library. Variables may have the names of functions; these count only where they are
 /// called.
 Mentioned mentioned(const std::vector<Token>& t, const LibraryText& of) {
     Mentioned m;
@@ -86,7 +86,7 @@ void mixIn(ClassDefinition& to, ClassDefinition from) {
         if (s->definition ? lacks(s->definition->name) : !s->declarators.empty())
             (s->definition ? methods : members).push_back(std::move(s));
     }
-    // members stand before methods
+    // members precede methods
     const auto insert = [&](auto at, std::vector<StmtPtr>& s) {
         own.body->body.insert(at, std::make_move_iterator(s.begin()), std::make_move_iterator(s.end()));
     };

@@ -12,7 +12,7 @@ namespace alpenglow::rsl::front {
 
 namespace {
 
-/// The variable that stands left of an assignment or is put out, as it is written: no conversion of it.
+/// The variable that an assignment or an output argument writes; null if the expression is none.
 const Symbol* root(const Expr& e) {
     const Expr* r = &e;
     while (r->kind == ExprKind::Index && !r->args.empty() && r->args[0]) r = r->args[0].get();
@@ -132,7 +132,7 @@ private:
         sources_.report(e.place, maybe ? msg::kMaybeUninitialised(name, value) : msg::kUninitialised(name, value));
     }
 
-    /// What stands left of an assignment, or is put out: its indices are read, itself it is written.
+    /// The target of an assignment or an output argument: indices are read, the variable is written.
     void target(const Expr& e, bool alsoRead) {
         if (alsoRead) expression(e);
         else
@@ -194,7 +194,7 @@ private:
                 if (p.value && p.output) target(*p.value, false);
             return;
         }
-        case ExprKind::Method: // another shader's: any variable that it is given may be one that it writes
+        case ExprKind::Method: // of another shader: it may write any variable among its arguments
             for (size_t i = 0; i < e.args.size(); ++i) {
                 if (!e.args[i]) continue;
                 if (i == 0 || !root(*e.args[i])) expression(*e.args[i]);

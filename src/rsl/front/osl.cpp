@@ -87,7 +87,7 @@ private:
     static std::string type(const std::string& t) { return t == "int" ? "float" : t; }
     static std::string lines(const OslWord& w) { return std::string(size_t(std::max(w.lines, 0)), '\n'); }
 
-    // --- what stands outside of everything: shaders, functions ---
+    // --- file level: shaders, functions ---
 
     size_t declaration(size_t i, std::string& out) {
         if (w_[i].kind == OslKind::Directive) {
@@ -323,7 +323,7 @@ private:
     Diagnostics& diagnostics_;
     std::map<size_t, size_t> close_;
     std::set<std::string> renamed_, whole_;
-    std::string before_; ///< what comes before the statement that is read
+    std::string before_; ///< text to insert before the current statement
     int shaders_ = 0;
     bool failed_ = false;
 };

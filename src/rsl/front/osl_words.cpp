@@ -48,7 +48,7 @@ private:
             else break;
         }
     }
-    /// Whether it says lockgeom = 0.
+    /// Skips metadata in [[ ]]. True if they have lockgeom = 0.
     bool skipMetadata() {
         std::string said;
         for (int depth = 0; at_ < text_.size();) {

@@ -79,7 +79,7 @@ void Parser::expectSemicolon(const char* after) {
     if (accept(";")) return;
     const bool newLine = peek().lineStart || at("}") || peek().kind == Tok::End;
     if (!newLine || peek().kind == Tok::Invalid) failHere(msg::kExpectedSemicolonBefore(after, shown()));
-    // It was forgotten at the end of a line: say so there and go on as if it stood there.
+    // Missing at the end of a line: reported there, and parsing continues as if it were present.
     if (!atCut()) sources_.report(endOfLast(), msg::kExpectedSemicolon(after));
 }
 
@@ -198,7 +198,7 @@ void Parser::read(const Preprocessed& text) {
     if (Shader* s = lastShader()) takeAnnotations(*s);
 }
 
-/// The shader or class that stands last in the texts so far; null if there is none.
+/// The last shader or class of the texts so far; null if there is none.
 Shader* Parser::lastShader() {
     const auto later = [](const Place& a, const Place& b) { return std::tie(a.line, a.column) > std::tie(b.line, b.column); };
     Shader* last = unit_.shaders.empty() ? nullptr : unit_.shaders.back().get();

@@ -6,7 +6,7 @@
 
 namespace alpenglow::rsl::front {
 
-/// At the name. The body is read; a prototype without one gives nothing.
+/// At the name. Null for a prototype, which has no body.
 std::unique_ptr<Function> Parser::function(Type type, bool typed) {
     auto f = std::make_unique<Function>();
     f->place = peek().place;

@@ -207,7 +207,7 @@ void Parser::shaderObject() {
         }
     }
     accept(";");
-    // Methods see all members, wherever these stand.
+    // Methods follow all members, which they may use before the text declares them.
     for (auto& m : methods) s.body->body.push_back(std::move(m));
     owner_ = {};
     inObject_ = false;

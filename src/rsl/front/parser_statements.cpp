@@ -192,7 +192,7 @@ StmtPtr Parser::declaration(bool member) {
         if (!length && shared) length = clone(*shared);
         Symbol* symbol = declare(owner_, name, own, spec);
         s->declarators.push_back({symbol, nullptr});
-        if (length && !spec.isExtern) { // float x[n]: an open array that is given its length
+        if (length && !spec.isExtern) { // float x[n]: an open array, then resize()
             auto e = node(ExprKind::ShadeopCall, length->place);
             e->text = "resize";
             adopt(*e, variable(symbol->name, length->place));
@@ -303,7 +303,7 @@ StmtPtr Parser::doLoop() {
 StmtPtr Parser::lightStatement(StmtKind kind) {
     auto s = make(kind, take().place);
     expect("(", "");
-    arguments(s->exprs); // the checker tells category, positions and pairs apart
+    arguments(s->exprs); // the checker separates category, positions and pairs
     s->body.push_back(statement());
     if (!s->body[0]) s->body[0] = make(StmtKind::Block, s->place);
     if (kind == StmtKind::Gather && accept("else")) s->elseBody = statement();

@@ -166,7 +166,7 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
     }
     if (files_ > limits::kIncludeDepth) {
         if (!nestedTooDeep_) sources_.report(hash, msg::kIncludeDepth(limits::kIncludeDepth));
-        nestedTooDeep_ = out_.incomplete = true; // once: a file that includes itself twice would say so thousands of times
+        nestedTooDeep_ = out_.incomplete = true; // reported once: a file that includes itself twice gets here thousands of times
         return;
     }
     if (++includes_ > limits::kIncludes || read_ > limits::kSourceBytes) {
@@ -188,7 +188,7 @@ void Preprocessor::include(std::vector<Token> line, Place hash) {
         sources_.report(place, msg::kIncludeElsewhere(name, out_.dependencies.back()));
         return;
     }
-    // A system that does not tell capitals from small letters found it.
+    // The file system ignores case and found it.
     if (!shippedHeader(base) && includeAnyCase(folders, slashed)) {
         sources_.report(place, msg::kIncludeElsewhere(name, out_.dependencies.back()),
                         "did you mean \"" + slashed.substr(0, slashed.size() - base.size()) +

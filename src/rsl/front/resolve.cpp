@@ -64,7 +64,7 @@ void Checker::resolveTypes(ExprPtr& e, Type want) {
     convert(e, want);
 }
 
-/// What arithmetic with a number has made a float is wanted as a tuple, and so gets three alike components.
+/// Notes that a call, float because of arithmetic with a number, becomes a tuple of three equal components.
 void Checker::becomesTuple(const Info& info, const Expr& settled, Base wanted) {
     if (unit_ != &main_ || !info.number || settled.type != Type{Base::Float, 0} || !Type{wanted, 0}.isTuple()) return;
     const Place& p = info.number->place;
@@ -162,7 +162,7 @@ void Checker::resolveArray(ExprPtr& e, Type want) {
             e->args.resize(size_t(length));
         }
         for (auto& a : e->args) resolveTypes(a, want.element());
-        // Elements that are not given are the last one again after "...", else zero: the list stays as short as it was written.
+        // The list keeps its written length. Missing elements are the last one again after "...", else zero.
         for (const auto& a : e->args) e->height = std::max(e->height, a->height + 1);
         e->type = {want.base, length};
         finish(*e);

@@ -9,7 +9,7 @@ namespace alpenglow::rsl::front {
 namespace {
 
 constexpr int kSeExprDepth = 200;       // of brackets, conditions and signs
-constexpr size_t kSeExprText = 1 << 20; // of what comes out
+constexpr size_t kSeExprText = 1 << 20; // bytes of the translation
 
 /// A part of an expression in RSL; `vec`: three numbers, a color there.
 struct SeExprPart {
@@ -352,7 +352,7 @@ private:
             if (a[0].vec) return each(a[0], [&](const std::string& x) { return f + "(" + x + ")"; });
             return {f + "(" + a[0].text + ")", false};
         }
-        if (n == "smoothstep" && a.size() == 3) // the number comes first
+        if (n == "smoothstep" && a.size() == 3) // SeExpr has the value first
             return {"smoothstep(" + number(a[1]) + ", " + number(a[2]) + ", " + number(a[0]) + ")", false};
         if (n == "boxstep" && a.size() == 2) return {"step(" + number(a[1]) + ", " + number(a[0]) + ")", false};
         for (const SeExprFunction& f : kSeExprFunctions) {

@@ -89,8 +89,8 @@ void SourceSet::flush(Diagnostics& d) {
         return std::tie(a.place.file, a.place.line, a.place.column, a.order) <
                std::tie(b.place.file, b.place.line, b.place.column, b.order);
     });
-    constexpr int kAlike = 20; // in a line; what a program wrote in one line may say the same ten thousand times
-    std::map<std::tuple<int, int, std::string>, std::pair<int, int>> alike; // how many there are, and were told
+    constexpr int kAlike = 20; // in one line, which in generated text may repeat a mistake ten thousand times
+    std::map<std::tuple<int, int, std::string>, std::pair<int, int>> alike; // how many there are, how many were passed on
     for (const Message& m : messages_) ++alike[{m.place.file, m.place.line, m.text}].first;
     size_t kept = 0; // bytes of source lines: thousands of messages about one long line must not keep it thousands of times
     for (auto& m : messages_) {

@@ -1,4 +1,4 @@
-// Which structures there are, what is in them, and the variables that stand for one variable of them.
+// Structures, their members, and the plain variables that replace one variable of a structure.
 #include "rsl/front/structs.h"
 #include "base/limits.h"
 #include "rsl/front/clone.h"

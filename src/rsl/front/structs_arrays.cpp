@@ -44,7 +44,7 @@ ExprPtr shipped(const char* name, ExprPtr a, Place place) {
     return e;
 }
 
-/// How many structures so many elements are, of which each has `each`; what a scene gives may end within one.
+/// The number of whole structures in so many elements, `each` per structure. Values of a scene may end within one.
 ExprPtr wholeStructures(ExprPtr elements, int each) {
     const Place place = elements->place;
     return each == 1 ? std::move(elements)
@@ -131,7 +131,7 @@ ExprPtr Lowering::partAt(ExprPtr array, ExprPtr at, int each) {
     return e;
 }
 
-/// An array of n elements, one by one. What must be computed first goes to `pre`.
+/// The elements of an array. Computations that must come first are appended to `pre`.
 void Lowering::elements(ExprPtr array, Type type, List& pre, List& out) {
     const Place place = array->place;
     const int n = type.array;
@@ -154,7 +154,7 @@ void Lowering::elements(ExprPtr array, Type type, List& pre, List& out) {
     for (int k = 0; k < n; ++k) out.push_back(partAt(clone(*array), number(k, place), 0));
 }
 
-/// What stands for a slice where its values are wanted: their list. Others stay as they are.
+/// A slice as the list of its values; other expressions are returned as they are.
 ExprPtr Lowering::whole(ExprPtr e) {
     if (!e || !isSlice(*e)) return e;
     auto list = node(ExprKind::ArrayList, e->place);

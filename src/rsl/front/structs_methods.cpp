@@ -187,10 +187,10 @@ void Lowering::methodCall(Expr& e) {
     e.text.clear(); // no more messages about this call
 }
 
-/// Where a function of the renderer is asked about a region instead of a point, the parts of the region that it understands.
+/// Replaces a filterregion in a call of a shadeop by the members that the shadeop takes.
 void Lowering::regions(Expr& call) {
     if (call.kind != ExprKind::ShadeopCall || functions_.count(call.text)) return;
-    // "materialsamples", samples: what was drawn is not told, as nothing is drawn from the material.
+    // "materialsamples", samples: left as they are, since these calls draw no samples of the material.
     static const std::set<std::string_view> kSums = {"directlighting", "diffuselighting", "specularlighting", "indirectspecular"};
     const int sample = structNamed("__radiancesample");
     if (sample >= 0 && kSums.count(call.text))

@@ -140,7 +140,7 @@ void Lowering::flattenConditional(Expr& e, Type type, List& pre, List& out) {
     }
 }
 
-/// A call that gives a structure: it fills variables, which are its last arguments.
+/// A call that returns a structure: its last arguments are variables that receive the members.
 void Lowering::flattenCall(ExprPtr e, Type type, List& pre, List& out) {
     if (structNamed(e->text) >= 0) return construct(type, *e, pre, out);
     if (e->text == "pop") return popLast(*e, type, pre, out);
@@ -158,7 +158,7 @@ void Lowering::flattenCall(ExprPtr e, Type type, List& pre, List& out) {
     for (auto& a : after) pre.push_back(std::move(a));
 }
 
-/// The parts of an expression that is a structure; what must happen before goes to `pre`.
+/// The plain members of an expression that is a structure. Effects that must come first are appended to `pre`.
 void Lowering::flatten(ExprPtr e, List& pre, List& out) {
     const Type type = typeOf(*e);
     const Place place = e->place;
@@ -211,7 +211,7 @@ void Lowering::pick(Expr& e, List& pre, List& out) {
     }
 }
 
-/// left = right, both structures. `value`: what the assignment is, where that is wanted.
+/// left = right, both structures. `value` receives the members of the result, if it is used.
 void Lowering::assignTo(Expr& e, List& pre, List* value) {
     const Type type = typeOf(*e.args[0]);
     const Place place = e.place;
@@ -332,7 +332,7 @@ void Lowering::arguments(Expr& call, List& pre, List& after) {
     }
 }
 
-/// The arguments of a method of another shader: a structure is given as its members, as the method takes it.
+/// The arguments of a method of another shader: a structure is passed as its members, as the method declares it.
 void Lowering::handleArguments(Expr& call, List& pre) {
     std::vector<ExprPtr> given = std::move(call.args);
     call.args.clear();
@@ -348,7 +348,7 @@ void Lowering::handleArguments(Expr& call, List& pre) {
     }
 }
 
-/// What argument `i` of type `have` is given as: itself, or a structure that it extends.
+/// The structure as which argument `i` of type `have` is passed: its own, or one that it extends.
 Base Lowering::wanted(const std::string& function, size_t arguments, size_t i, Type have) const {
     Base found = have.base;
     const auto [from, to] = functions_.equal_range(function);

@@ -73,7 +73,7 @@ std::unique_ptr<Kernel> buildKernel(const Program& p, const Shader& s, const Ker
 }
 
 std::vector<OutputLight> lightOfOutputs(const Program& p, const Shader& s, const KernelOptions& o) {
-    Diagnostics quiet; // the messages come when the kernel is made
+    Diagnostics quiet; // reported when the kernel is made
     const auto k = buildOnce(p, s, o, quiet, {});
     return k ? passes::lightOfOutputs(*k, o) : std::vector<OutputLight>();
 }

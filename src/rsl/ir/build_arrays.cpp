@@ -55,7 +55,7 @@ int Builder::largestResize() {
     const auto wanted = [&](const Expr& e) {
         double n = usualLength(e, shader_.parameters);
         for (const CoShader& c : options_.coShaders) n = std::max(n, usualLength(e, c.shader->parameters));
-        // What a scene gives may be larger than a default; a constant is what it is.
+        // The scene may set a value that is larger than the default; constants do not change.
         if (e.kind != ExprKind::Number) n = std::min(n, static_cast<double>(limits::kResizableArray) * 16);
         largestResize_ = std::max(largestResize_, static_cast<int>(std::clamp(n, 0.0, 1e6)));
     };
@@ -143,7 +143,7 @@ void Builder::storeElement(Inst* a, Inst* index, Inst* value) {
         store);
 }
 
-/// The length that an array gets when it is resized to `wanted`: less where memory runs out, reported when the shader runs.
+/// The new length of an array that is resized to `wanted`: less if its memory is exhausted, which is reported at run time.
 Inst* Builder::resized(const Inst* a, Inst* wanted) {
     if (!unbound_) return limitLength(a, wanted);
     return branch(

@@ -10,7 +10,7 @@ namespace alpenglow::rsl::ir {
 
 namespace {
 
-/// The output that is 1 where a call has given the channel of this key a value.
+/// The output that is 1 where a call has set the channel of this key.
 std::string flagOf(const std::string& key) { return OutputName::given(key).text(); }
 bool isFlag(const std::string& key) { return !OutputName::givenName(key).empty(); }
 
@@ -71,7 +71,7 @@ std::vector<std::pair<std::string, int>> Builder::channelsFor(Type type) {
     return all;
 }
 
-/// The output of that name, of the type that some call gives it; null when there is none.
+/// The output of that name, of the type of the calls that set it; null if there is none.
 const std::pair<int, Type>* Builder::channelNamed(const std::string& name) {
     const std::pair<int, Type>* found = nullptr;
     for (auto c = channels_.lower_bound(name); c != channels_.end() && c->first.rfind(name, 0) == 0; ++c)
@@ -122,7 +122,7 @@ std::vector<int> Builder::enteringSlots() const {
     return {channels_.at(kEntering).first, channels_.at(flagOf(kEntering)).first};
 }
 
-/// What a subsurface() says enters: that of the first call counts.
+/// The irradiance that enters by subsurface(); of several calls the first one's.
 void Builder::enters(Inst* irradiance) {
     const std::vector<int> slots = enteringSlots();
     if (slots.empty()) return;
@@ -140,7 +140,7 @@ int Builder::channelSlot(const std::string& text, Type type) {
     return -1;
 }
 
-/// The value goes to the output `n`, where `condition` (null: everywhere).
+/// Stores the value in output `n` where `condition` holds (null: everywhere).
 void Builder::giveChannel(int n, const Expr& value, Inst* whole, Inst* condition) {
     for (const auto& [key, channel] : channels_)
         if (const auto flag = channels_.find(flagOf(key)); channel.first == n && flag != channels_.end()) {

@@ -94,7 +94,7 @@ Inst* Builder::array(const Expr& e) {
         inlineFunction(*e.function, args, &a);
         return a ? a : newArray(e.type.base, std::max(1, e.type.array));
     }
-    if (e.type.array < 0 && e.kind == ExprKind::ShadeopCall && e.shadeop) { // as long as what it gives: getlights()
+    if (e.type.array < 0 && e.kind == ExprKind::ShadeopCall && e.shadeop) { // the length is that of the result: getlights()
         Inst* a = newResizable(e.type.base, 0);
         copyResizable(a, e);
         return a;

@@ -20,11 +20,11 @@ bool isInput(const std::string& name) {
 
 } // namespace
 
-/// What a gather asks for with every handful of rays, and the variables that its turns fill.
+/// The request of a gather for each batch of rays, and the variables that its iterations fill.
 struct Builder::GatherCall {
     Site site, turn;
     std::vector<Inst*> args;
-    std::vector<std::pair<Receiver, size_t>> outputs; ///< with the number of the flag that says whether the value came
+    std::vector<std::pair<Receiver, size_t>> outputs; ///< with the index of the flag that is set if there is a value
 };
 
 Builder::GatherCall Builder::gatherCall(const Stmt& s) {
@@ -63,7 +63,7 @@ Builder::GatherCall Builder::gatherCall(const Stmt& s) {
             send(g.site, g.args, p);
             continue;
         }
-        if (!isInput(p.name) || p.value->type.array) continue; // front/lint_calls.cpp says it
+        if (!isInput(p.name) || p.value->type.array) continue; // reported by front/lint_calls.cpp
         Inst* v = expr(*p.value);
         const bool text = v->kind == Kind::String,
                    wantsText = !(p.name == "bias" || p.name == "maxdist" || p.name == "samplebase" || p.name == "maxhitdist" ||

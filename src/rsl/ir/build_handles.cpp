@@ -25,7 +25,7 @@ bool handsItselfOver(const Shader& s, const Program& p) {
 
 } // namespace
 
-/// An error that shows when the shader runs, where it comes to this.
+/// An error that is reported at run time, by the points that reach it.
 void Builder::complain(const Place& place, const Raised& message) {
     place_ = place;
     call(Op::Service, complaint(message), {});
@@ -47,7 +47,7 @@ Inst* Builder::handleText(const Expr& e) {
     if (e.text == "(surface)" && shader_.kind != ShaderKind::Imager) return leaves_.string(surface);
     if (e.text == "(caller)" && (!current_.empty() || lightShader)) {
         const size_t n = current_.size();
-        if (n == 0) return leaves_.string(surface); // a light is asked by the surface
+        if (n == 0) return leaves_.string(surface); // lights are queried by surfaces
         return leaves_.string(n > 1 && !isSelf(current_[n - 2]) ? instances_[current_[n - 2]].binding->handle : self);
     }
     if (e.text == "(light)" && lightDepth_ > 0) {
@@ -113,7 +113,7 @@ void Builder::leaveInstance() {
     switchInstance(isSelf(i), i, own, own ? 0 : current_.back());
 }
 
-/// Binds the parameters of a co-shader and runs what comes before the methods: members, construct() and begin().
+/// Binds the parameters of a co-shader and runs its members, construct() and begin(), before any method.
 void Builder::beginInstance(size_t i) {
     const CoShader& c = *instances_[i].binding;
     enterInstance(i);
@@ -165,7 +165,7 @@ void Builder::beginInstance(size_t i) {
     leaveInstance();
 }
 
-/// Begins all co-shaders but patterns, which begin when a parameter wants their outputs.
+/// Runs the beginning of all co-shaders but patterns, which run when a parameter reads their outputs.
 void Builder::beginCoShaders() {
     if (options_.coShaders.empty() && !program_.handles) return;
     for (const CoShader& c : options_.coShaders) {
@@ -185,7 +185,7 @@ void Builder::beginCoShaders() {
     instances_.push_back({&selfBinding_, &program_.files, 0, {}});
 }
 
-/// Runs `code` for the co-shader of the handle and gives its value; zero of null.
+/// Runs `code` for the co-shader of the handle and returns its value; zero for the null handle.
 Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst*(size_t)>& code,
                          const std::function<Inst*(Inst*)>& light) {
     Inst* h = expr(handle, Kind::String);

@@ -1,4 +1,4 @@
-// Which shader a handle can be, and the calls that give handles: getshader(), getshaders(), arrays of handles.
+// The shaders that a handle can mean, and calls that return handles: getshader(), getshaders(), arrays of handles.
 #include "base/category.h"
 #include "base/limits.h"
 #include "rsl/front/protocol.h"
@@ -106,7 +106,7 @@ std::vector<Inst*> Builder::handlesOf(const Expr& e, std::vector<Inst*>* when) {
     return all;
 }
 
-/// Stores in the array the handles that getshaders() gives, and returns how many that are.
+/// Stores the handles of getshaders() in the array and returns their number.
 Inst* Builder::storeHandles(Inst* to, const Expr& e) {
     std::vector<Inst*> when;
     const std::vector<Inst*> all = handlesOf(e, &when);

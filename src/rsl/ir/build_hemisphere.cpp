@@ -36,7 +36,7 @@ std::string resultNamed(const std::string& output, bool occlusion) {
 
 } // namespace
 
-/// A call of occlusion() or indirectdiffuse() as a request: what it asks, and where its results go.
+/// A call of occlusion() or indirectdiffuse() as a request: its arguments and the variables of its results.
 struct Builder::Hemisphere {
     Site site;
     std::vector<Inst*> args;

@@ -85,7 +85,7 @@ void Builder::Illuminance::readPairs() {
     }
 }
 
-/// Outputs of the shader that lights of the scene ask for, as they are now, and N where the shader has changed it.
+/// The current values of outputs that lights of the scene query, and of N if the shader has changed it.
 void Builder::Illuminance::giveSurface() {
     for (const auto& [name, parameter] : b.messageSlots_)
         give(PairName::surface(name).text(), b.get(parameter.first), parameter.second);
@@ -93,7 +93,7 @@ void Builder::Illuminance::giveSurface() {
         give("N", b.get(n->second), {Base::Normal, 0});
 }
 
-/// The loop with its fixed operands, behind the call that tells the renderer the rest.
+/// The loop with its fixed operands. The service call before it passes the rest to the renderer.
 Inst* Builder::Illuminance::begin() {
     Inst* inst = b.k_.make(Op::LightLoop, Kind::None);
     inst->place = b.keptPlace(s.place);

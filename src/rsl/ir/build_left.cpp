@@ -7,7 +7,7 @@
 
 namespace alpenglow::rsl::ir {
 
-/// The value that an output OutputName::left() asks for; null where `name` is no such output.
+/// The value of an output OutputName::left(); null if `name` is no such output.
 Inst* Builder::leftBehind(const std::string& name, Type& type) {
     const OutputName o = OutputName::parse(name);
     const Symbol* s = o.member ? ownMember(shader_, o.name) : nullptr;
@@ -66,7 +66,7 @@ void Builder::objectBody(bool opacityOnly) {
         if (all[n]->definition || calls(*all[n], "construct") || calls(*all[n], "begin")) first = n + 1;
     for (size_t n = 0; n < all.size(); ++n) {
         if (n == first) hearMembers();
-        // Who displaces and shades says what it has to say when it shades.
+        // A class that displaces and shades prints its messages when it shades, not twice.
         const auto quiet = std::find_if(options_.stringParameters.begin(), options_.stringParameters.end(),
                                         [](const auto& p) { return p.first == kBeginQuiet; }) != options_.stringParameters.end();
         quiet_ += quiet && n < first;

@@ -84,7 +84,7 @@ void Builder::lightBlock(const Stmt& s) {
     const LightBlock b = lightBlocks_[static_cast<size_t>(index)];
     Inst *L, *lit = boolean(true);
     if (s.kind == StmtKind::Solar) {
-        // All directions: the renderer's, from where P stands.
+        // All directions, sampled by the renderer from P.
         L = s.exprs.empty() ? emit(Op::Sub, Kind::Triple, {global("Ps", Base::Point), global("P", Base::Point)})
                             : expr(*s.exprs[0], Kind::Triple);
         if (s.exprs.size() > 1)

@@ -18,7 +18,7 @@ Site question(const char* op, const Place& place) {
 } // namespace
 
 /// handle->light(L, Cl [, Ol]): L from the light to the surface, as the light's shader has it; under path with the shadow at P.
-/// What else a call gives is for shader objects whose methods light() take more (methodCall()); other lights do not see it.
+/// Further arguments are for shader objects whose light() takes more (methodCall()); other lights ignore them.
 Inst* Builder::lightMethod(const Expr& e, Inst* handle) {
     if (e.text != "light" || e.args.size() < 3) { // null is null; another handle is that of a shader without methods
         Inst* some = emit(Op::NotEqual, Kind::Bool, {handle, leaves_.string("")});
@@ -97,7 +97,7 @@ Inst* Builder::getLight(const Expr& e) {
     return call(Op::Service, std::move(s), std::move(args))[0];
 }
 
-/// What getlights() gives: how many, then the handles.
+/// The results of getlights(): the number, then the handles.
 std::vector<Inst*> Builder::lightHandles(const Expr& e) {
     Site s = question("getlights", e.place);
     std::vector<Inst*> args;

@@ -61,7 +61,7 @@ Type Builder::typeOfMember(const Expr& e) {
 void Builder::lacks(const Place& place, size_t i, const Lack& lack, const std::function<bool(size_t)>& has) {
     if (!certain_ && isSelf(i)) return; // another shader of the handle has it
     const CoShader& c = *instances_[i].binding;
-    bool another = c.light && !certain_; // lights of other kinds may have it, which are asked when the shader runs
+    bool another = c.light && !certain_; // lights of other kinds may have it; these are queried at run time
     for (size_t n = 0; n < instances_.size() && !certain_; ++n) another |= n != i && has(n);
     if (another) complain(place, lack.whenRun);
     else report(place, lack.error);
@@ -117,7 +117,7 @@ Inst* Builder::primitiveVariable(const std::string& name, const Expr* to) {
         return askPrimitive(leaves_.string(name), to);
     const auto& there = options_.varyingParameters;
     if (std::find(there.begin(), there.end(), name) == there.end()) {
-        // What every primitive has, as it comes to the shader, with its derivatives.
+        // Predefined variables of every primitive, as inputs with derivatives.
         const bool triple = among(name, {"P", "N", "Cs", "Os"});
         if (!triple && !among(name, {"s", "t"})) return askPrimitive(leaves_.string(name), to);
         if (!to) return constant(1);
@@ -129,7 +129,7 @@ Inst* Builder::primitiveVariable(const std::string& name, const Expr* to) {
     const Type wanted = to->type;
     for (const ShaderParameter& p : shader_.parameters)
         if (p.symbol->name == name && p.symbol->type != wanted) return constant(0);
-    // The scene knows one type for it: that of the first who asks, the shader before its co-shaders.
+    // A primitive variable has one type: that of its first use, in the shader before its co-shaders.
     const auto asked = [&](const Program& p) {
         const auto found = p.primitiveVariables.find(name);
         return found == p.primitiveVariables.end() ? nullptr : &found->second;

@@ -27,7 +27,7 @@ Builder::Receiver Builder::receiver(Site& s, const Expr& to, const std::string& 
     return r;
 }
 
-/// `found`: a Bool; null: the answer always comes. A variable that gets none stays as it was.
+/// `found`: a Bool, null if there is always an answer. A variable without an answer keeps its value.
 void Builder::receive(const Receiver& r, std::span<Inst* const> values, Inst* found) {
     const auto either = [&](Inst* v, Inst* old) {
         return found ? emit(Op::Select, v->kind, {found, v, coerce(old, v->kind)}) : v;

@@ -18,7 +18,7 @@ std::set<std::string> Builder::connectedHandles() const {
     return handles;
 }
 
-/// Runs a pattern whose outputs are wanted. False: it is running already, or cannot.
+/// Runs a pattern whose outputs are read. False if it is running already or cannot run.
 bool Builder::runPattern(size_t i) {
     if (pattern_.size() < instances_.size()) pattern_.resize(instances_.size(), Pattern::Waits);
     if (pattern_[i] == Pattern::Runs) return false;
@@ -54,7 +54,7 @@ bool Builder::runPattern(size_t i) {
     return true;
 }
 
-/// The value of an output as a variable takes it: a number is a grey, a color gives its mean. Null: there is none that fits.
+/// An output converted to the variable's type: a number becomes a grey, a color its mean. Null if it does not convert.
 Inst* Builder::connectedOutput(const Connected& c, const Symbol& to) {
     for (size_t i = 0; i < instances_.size(); ++i) {
         const CoShader& pattern = *instances_[i].binding;
@@ -80,7 +80,7 @@ Inst* Builder::connectedOutput(const Connected& c, const Symbol& to) {
     return nullptr; // there is no such pattern, which was reported when it was bound
 }
 
-/// What a connection gives for a parameter, or for an element of it; null: it has none. strings: what the shader was given.
+/// The value that a connection has for a parameter or an element of it; null if there is none. strings: of the instance.
 template <class Strings> Inst* Builder::connected(const Symbol& s, int element, const Strings& strings) {
     const std::string key = Connected::key(s.name, element);
     for (const auto& [name, text] : strings)

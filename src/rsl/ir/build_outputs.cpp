@@ -1,4 +1,4 @@
-// What a kernel puts out: the outputs that its user asks for, by name (protocol.h), or those that its kind of shader has.
+// The outputs of a kernel: those that its user requests by name (protocol.h), or those of its kind of shader.
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
@@ -41,7 +41,7 @@ void Builder::noteBlocks() {
         k_.facts.blocks.push_back(kBlockOutside);
 }
 
-/// The outputs of this kind of shader where nobody asks for others.
+/// The default outputs of this kind of shader.
 std::vector<std::string> Builder::usualOutputs() const {
     switch (shader_.kind) {
     case ShaderKind::Displacement:

@@ -1,4 +1,4 @@
-// Calls of plug-in functions: everything goes in as rows, constant strings too, and outputs with the values they have.
+// Calls of plug-in functions: all arguments are rows, constant strings too, and outputs have their current values.
 #include "rsl/front/plugin.h"
 #include "rsl/ir/builder.h"
 

@@ -9,7 +9,7 @@ namespace alpenglow::rsl::ir {
 
 namespace {
 constexpr const char* kRays = "raytrace";
-constexpr float kFar = 1e10f; // where the parallel rays of a solar light come from
+constexpr float kFar = 1e10f; // distance of the source of a solar light's parallel rays
 } // namespace
 
 /// A request `name` for a colour, with those of the call's pairs that it knows.
@@ -122,7 +122,7 @@ Inst* Builder::tracedMap(const Expr& e) {
         Inst* cone = nullptr;
         const auto larger = [&](Inst* v) { cone = cone ? runtime1("al_max_f", {cone, v}, Kind::Float) : v; };
         Inst* axis = unit(middle);
-        if (at.size() == 4) // as wide as the corners say
+        if (at.size() == 4) // as wide as the corners are apart
             for (Inst* corner : at)
                 larger(runtime1("al_acos", {runtime1("al_min_f", {constant(1), dot(axis, unit(corner))}, Kind::Float)},
                                 Kind::Float));

@@ -1,4 +1,4 @@
-// Calls that the renderer answers: what goes along with them, and what comes back.
+// Calls that the renderer answers: their operands and results.
 #include "rsl/front/protocol.h"
 #include "rsl/ir/builder.h"
 #include <algorithm>
@@ -12,7 +12,7 @@ struct Builder::ServiceCall {
     Builder& b;
     const Expr& e;
     const Op kind;     ///< Service or Request
-    const int part;    ///< of a call that gives an array; -1: all in one
+    const int part;    ///< of a call whose result is an array; -1: all elements in one call
     const bool points; ///< it is answered from point clouds
     const Shadeop& op = *e.shadeop;
     const Signature& sig = *e.signature;
@@ -86,7 +86,7 @@ void Builder::ServiceCall::output(const Expr& l, const std::string& name) {
         if (o.at >= b.arrayLength(b.array(l))) return;
         result(kindOf(l.type.element()), name);
     } else if (part > 0) {
-        return; // what belongs to all parts comes with the first
+        return; // the first part has what belongs to all parts
     } else if (l.type.array) {
         Inst* a = b.array(l);
         o.count = b.arrayLength(a);
@@ -126,7 +126,7 @@ void Builder::ServiceCall::arguments() {
     }
 }
 
-/// How far a coordinate goes from one sample to the next, along u or v.
+/// The change of a coordinate from one sample to the next, along u or v.
 Inst* Builder::ServiceCall::footprint(Inst* v, const char* size, Op derivative) {
     Inst* step = b.coerce(b.global(size, Base::Float), v->kind);
     return isConst(step, 0.0f) ? b.zero(v->kind) : b.emit(Op::Mul, v->kind, {b.emit(derivative, v->kind, {v}), step});
@@ -189,7 +189,7 @@ void Builder::ServiceCall::pairs() {
 
 /// Pairs that the shader does not write, for the renderer.
 void Builder::ServiceCall::hiddenPairs() {
-    // Lights that the rays or the samples of this call meet ask for outputs as they are now.
+    // Lights that rays or samples of this call reach query the current values of outputs.
     static constexpr std::string_view kLit[] = {"diffuse", "specular", "specularstd", "phong", "trace"};
     if (kind == Op::Request && isOneOf(kLit, op.name))
         for (const auto& [name, parameter] : b.messageSlots_) {
@@ -204,7 +204,7 @@ void Builder::ServiceCall::hiddenPairs() {
                                                     "incident", "opposite",     "lightsource"};
     if (isOneOf(kShaders, op.name) && !received.empty() && isUniform(received[0].first.to)) mark(kPairUniform);
     static constexpr std::string_view kOfTheTurn[] = {"lightsource", "attribute", "shadername"};
-    if (b.lightDepth_ == 0 && isOneOf(kOfTheTurn, op.name)) { // there is no light to ask about
+    if (b.lightDepth_ == 0 && isOneOf(kOfTheTurn, op.name)) { // outside of light loops
         if (op.name == "lightsource" && b.shader_.kind != ShaderKind::Light)
             b.report(e.place, msg::kOutsideIlluminance("lightsource"));
         mark(kPairOutside);

@@ -94,7 +94,7 @@ Inst* Builder::sentValue(const ShaderParameter& p, Inst* usual, int room) {
     return a;
 }
 
-/// What the scene, the primitive or the default gives.
+/// The value of a parameter from the scene, the primitive or its default.
 Inst* Builder::ownValue(const ShaderParameter& p) {
     const Symbol& s = *p.symbol;
     Type type = s.type;
@@ -150,7 +150,7 @@ Inst* Builder::givenValue(const Symbol& s, const ParameterValue& v) {
     return a;
 }
 
-/// What a parameter is that nothing was given for. `length`: of an array.
+/// The value of a parameter without a default. `length`: of an array.
 Inst* Builder::defaultValue(const ShaderParameter& p, int length) {
     const Symbol& s = *p.symbol;
     if (s.type.array) {

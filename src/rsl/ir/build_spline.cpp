@@ -132,7 +132,7 @@ Inst* Builder::splineOf(SplineCall c, const std::string& basis, bool solve) {
         r = runtime1("al_spline_" + basis + (c.kind == Kind::Float ? "_f" : "_t"), pointsAt(st[1], st[0]), c.kind);
     }
     if (fixed) return r;
-    // Known when the shader runs: too few points give 0, as they do where the compiler sees it.
+    // The number of points is known at run time: too few give 0, as for constant numbers.
     return emit(Op::Select, c.kind, {emit(Op::Less, Kind::Bool, {c.length, constant(4)}), zero(c.kind), r});
 }
 

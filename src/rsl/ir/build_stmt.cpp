@@ -262,7 +262,7 @@ void Builder::scanAssigned(const Expr& e, std::set<int>& out, std::set<const Fun
 }
 
 void Builder::scanAssigned(const Stmt& s, std::set<int>& out, std::set<const Function*>& seen) {
-    // What stands inside first: slots are numbered in this order.
+    // Inner statements first: slots are numbered in this order.
     front::eachBody(s, [&](const StmtPtr& b) { scanAssigned(*b, out, seen); });
     front::eachPart(s, [&](const Expr& e) { scanAssigned(e, out, seen); });
     front::eachWritten(s, [&](const Expr& place) {

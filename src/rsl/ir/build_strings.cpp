@@ -43,7 +43,7 @@ Inst* Builder::foldString(const std::string& op, const std::vector<Inst*>& args)
     return leaves_.string(out);
 }
 
-/// The form of trace() that gives an array: a request for each part of the distribution.
+/// The form of trace() whose result is an array: a request for each part of the distribution.
 std::vector<Inst*> Builder::traceParts(const Expr& written) {
     const Expr& e = withNames(written);
     std::string name = "uniform";

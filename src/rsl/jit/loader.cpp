@@ -28,7 +28,7 @@ void* external(const std::string& name) {
 size_t roundUp(size_t n, size_t to) { return (n + to - 1) / to * to; }
 
 constexpr size_t kStubBytes = 16;             // jmp *[rip+2]; ud2; the address
-constexpr size_t kLargestObject = 256u << 20; // nothing that we generate comes near
+constexpr size_t kLargestObject = 256u << 20; // far above any object of this compiler
 
 /// Why a file cannot be loaded.
 using Fault = std::string;
@@ -183,7 +183,7 @@ uint64_t Linker::stub(uint64_t target) {
     return reinterpret_cast<uint64_t>(base_) + it->second;
 }
 
-/// Where in the offset table an address stands; 0: there is no room.
+/// The place of an address in the offset table; 0 if the table is full.
 uint64_t Linker::slot(uint64_t target) {
     auto [it, fresh] = slotOf_.try_emplace(target, layout_.table + slotOf_.size() * 8);
     if (it->second + 8 > layout_.groupStart[3]) return 0;

@@ -62,7 +62,7 @@ Module* loadModule() {
     if (!handle) {
         const char* why = dlerror();
         const std::string text = why ? why : file;
-        // What the loader says when there is no memory; with some, the next frame may be more fortunate.
+        // The dynamic loader's message when memory is exhausted; a later attempt may succeed, so the failure is not kept.
         for (const char* sign : {"failed to map", "cannot allocate", "Cannot allocate", "cannot create shared object descriptor"})
             if (text.find(sign) != std::string::npos) {
                 delete m;

@@ -75,7 +75,7 @@ bool prove(Kernel& k, bool split) {
         return refuse(site, why);
     }
     dropResults(k, d);
-    // The Requests are gone in spirit; now in fact.
+    // Nothing uses the results of these Requests any more: they are removed.
     const auto sweep = [&](auto&& self, Region& r) -> void {
         std::erase_if(
             r.body, [](const Inst* i) { return i->op == Op::Request || (i->op == Op::Result && i->args[0]->op == Op::Request); });

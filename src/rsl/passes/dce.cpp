@@ -191,7 +191,7 @@ struct Sweeper {
     std::unordered_map<std::pair<const Inst*, int>, char, Hash> used;
 };
 
-/// Loop variables that never change: the initial value stands for them.
+/// Replaces loop variables that never change by their initial values.
 int removeInvariant(Kernel& k) {
     Replacements rep;
     int changes = 0;

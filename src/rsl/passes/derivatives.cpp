@@ -116,7 +116,7 @@ struct Orders {
         }
     }
 
-    /// Needs of all functions: those that are called stand in front of those that call. Leaves no order behind.
+    /// Demands of all functions, callees before callers. The orders found on the way are reset.
     void study() {
         enter = false;
         quiet = true;
@@ -199,7 +199,7 @@ struct Orders {
             case Op::ArrayInput: {
                 Input& in = k.inputs[static_cast<size_t>(i->index)];
                 if (!in.constant && in.kind != Kind::Matrix)
-                    in.order = std::max(in.order, n); // callers give matrices without slopes
+                    in.order = std::max(in.order, n); // callers pass matrices without derivatives
                 else i->order = 0;                    // and is never asked again for less
                 break;
             }
@@ -235,7 +235,7 @@ void orderDerivatives(Kernel& k, Diagnostics& d) {
 }
 
 CallOrders callOrders(Kernel& k, Inst* function, const std::vector<uint8_t>& results) {
-    Diagnostics quiet; // orderDerivatives() says it
+    Diagnostics quiet; // reported by orderDerivatives()
     Orders o(k, quiet);
     if (function) o.index(function->regions[0], function);
     o.study();

@@ -77,7 +77,7 @@ struct Gradients {
         body.push_back(c);
         chained[i] = result(c, 0);
     }
-    std::unordered_map<const Inst*, Inst*> chained; ///< what stands for the value of a lookup
+    std::unordered_map<const Inst*, Inst*> chained; ///< the replacement of the value of a lookup
 
     void region(Region& r) {
         std::vector<Inst*> body;

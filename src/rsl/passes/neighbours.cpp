@@ -239,7 +239,7 @@ Demand::Carried Demand::carried(const Inst* o, const Inst* within) const {
 }
 
 Demand::Demand(Motion& m, Functions& functions) : motion_(m), functions_(functions) {
-    // Functions stand before those that call them: what they want of their arguments is known when a call is met.
+    // Callees precede callers: their demands on arguments are known when a call is reached.
     for (Inst* i : m.kernel().body.body) {
         if (i->op != Op::Function) continue;
         start(i->regions[0]);

@@ -81,7 +81,7 @@ int inlineCalls(Kernel& k, int budget) {
     if (functionsOf(k).empty()) return 0;
     removeUnused(k);
     int changes = 0;
-    // Functions stand behind those they call: a size is known when it is asked for.
+    // Callees precede callers: the sizes of callees are known.
     std::unordered_map<const Inst*, int> calls;
     forEach(k.body, [&](Inst* i) {
         if (i->op == Op::Call) ++calls[i->args[0]];

@@ -42,7 +42,7 @@ private:
         return s.op == "option" || s.op == "rendererinfo" || s.op == "match" || s.op == "concat" || s.op == "format";
     }
 
-    /// reached: all points come here, or none.
+    /// reached: all points get here, or none.
     void walk(const Region& region, bool reached) {
         for (const Inst* i : region.body) {
             if (i->op == Op::If) {

@@ -16,7 +16,7 @@ namespace {
 /// a quarter of them.
 constexpr size_t kLarge = 40000;
 
-/// LLVM asks a function without arguments, on the thread that makes the passes.
+/// LLVM calls a function without arguments, on the thread that creates the passes.
 thread_local llvm::FunctionPass* (*chosen)() = nullptr;
 
 llvm::FunctionPass* choose() { return chosen ? chosen() : llvm::createGreedyRegisterAllocator(); }

@@ -18,7 +18,7 @@ void Emitter::match(Value*& a, Value*& b) {
     b = lanes(b);
 }
 
-// Null stands for an exact zero that need not be computed.
+// Null means an exact zero that is not computed.
 Value* Emitter::fadd(Value* a, Value* b) {
     if (!a) return b;
     if (!b) return a;
@@ -230,7 +230,7 @@ void Emitter::arithmetic(const Inst* i) {
     default:
         fail(std::string("no code for ") + ir::name(i->op));
     }
-    // Only what is wanted is carried on.
+    // Only requested orders are computed.
     const uint8_t wanted = partsOfOrder(shapes_.order(i));
     for (Jet& j : r)
         for (size_t p = 0; p < 5; p++)

@@ -122,7 +122,7 @@ void Emitter::runtime(const Inst* i) {
     size_t at = 0;
     for (size_t k = 0; k < kinds.size(); k++) {
         Val v;
-        // Only the orders that are wanted go on.
+        // Only requested orders are kept.
         const uint8_t wanted = partsOfOrder(shapes_.order(i, int(k)));
         for (int c = 0; c < argumentComponents(kinds[k]); c++) {
             auto take = [&]() -> Value* {

@@ -67,7 +67,7 @@ BasicBlock* Emitter::block(const char* name) { return BasicBlock::Create(context
 
 Value* Emitter::any(Value* mask) { return b_.CreateOrReduce(mask); }
 
-// Loops ask whether the caller wants them to end, so that while (1) can be interrupted.
+// Loops test the caller's stop flag, so that while (1) can be interrupted.
 Value* Emitter::stopped() {
     auto* l = b_.CreateLoad(i32_, stop_, /*isVolatile=*/true, "stop");
     l->setAtomic(llvm::AtomicOrdering::Monotonic); // StopFlag: another thread sets it

@@ -115,7 +115,7 @@ void Emitter::emitCoroutine() {
     auto* null = llvm::ConstantPointerNull::get(llvm::cast<llvm::PointerType>(ptr_));
     Value* token = llvm::ConstantTokenNone::get(context_);
     Value* id = b_.CreateIntrinsic(llvm::Intrinsic::coro_id, {}, {b_.getInt32(64), null, null, null});
-    // The local memory stands behind the frame. How much it is, is known when the body has been written.
+    // Local memory follows the frame. Its size is known when the body has been emitted.
     auto* local = new llvm::GlobalVariable(module_, i64_, /*constant=*/true, llvm::GlobalValue::InternalLinkage,
                                            llvm::ConstantInt::get(i64_, 0), "local");
     const auto frameBytes = [&] {

@@ -19,7 +19,7 @@ llvm::Type* lanesOf(const Value& mask) {
                                  llvm::cast<llvm::VectorType>(mask.getType())->getElementCount());
 }
 
-/// Instructions whose result is a mask made of masks; everything else that gives one is a source.
+/// Instructions that make a mask of masks; other instructions with a mask as result are sources.
 bool combines(const Instruction& i) {
     if (!isMask(i)) return false;
     if (llvm::isa<llvm::PHINode>(i)) return true;

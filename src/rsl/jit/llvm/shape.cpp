@@ -140,7 +140,7 @@ bool Shapes::loop(const Inst* i, bool varyingControl) {
 bool Shapes::input(const Inst* i) {
     const ir::Input& in = kernel_.inputs[i->index];
     const bool jets = !in.uniform && i->op == Op::Input && (in.kind == Kind::Float || in.kind == Kind::Triple);
-    // u and v are what derivatives are taken by: (1, 0) and (0, 1), the second ones zero. Their footprints are given numbers.
+    // Derivatives are taken by u and v: (1, 0) and (0, 1), second ones zero. Their footprints are inputs.
     uint8_t parts = jets ? partsOfOrder(in.order) : uint8_t(0);
     if (in.name == "u") parts &= kDu;
     else if (in.name == "v") parts &= kDv;

@@ -12,6 +12,11 @@ struct GridPoint; // shading/gridpoint.h
 
 namespace alpenglow::integrator {
 
+/// Segments of rays in a medium that scatters.
+struct MediumSegments {
+    uint64_t all = 0, lost = 0; ///< lost: no surface ends them, so the medium has no end there
+};
+
 /// Counts of one integrator thread; the renderer adds them up.
 struct Counters {
     uint64_t camera = 0, diffuse = 0, specular = 0, transmission = 0, shadow = 0;
@@ -26,7 +31,8 @@ struct Counters {
     uint64_t guided = 0;                    ///< rays aimed by the caustic guide; also counted in the other counters
     uint64_t records = 0, interpolated = 0; ///< irradiance records made, and lookups interpolated from them
     int depthMax = 0;
-    size_t peakFrameBytes = 0; ///< largest size of suspended kernel frames at one time, over all threads
+    std::vector<MediumSegments> media; ///< by WorldImpl::media_; may be shorter
+    size_t peakFrameBytes = 0;         ///< largest size of suspended kernel frames at one time, over all threads
     void operator+=(const Counters&);
 };
 

@@ -95,6 +95,8 @@ constexpr OptionDescription kOptions[] = {
     {"rib:format", "", "", "", Ignored, "PRMan; alpenglow rib writes RIB, by its own flags; of the C binding this option counts"},
     {"rib:indentation", "", "", "", Ignored, "PRMan; alpenglow rib writes RIB, by its own flags"},
     {"rib:precision", "", "", "", Ignored, "PRMan; numbers are written so that they read back the same"},
+    {"rib:varsubst", "string", "\"\"", "\"$\"", Used,
+     "ricpp's name for Option \"ribparse\" \"varsubst\": it is the same option."},
     {"ribparse:varsubst", "string", "\"\"", "\"$\"", Used,
      "The character that begins variables in the texts that follow: ${name} and $name stand for what IfBegin has under that "
      "name. What is not set stays as it is."},

@@ -37,6 +37,8 @@ void Counters::operator+=(const Counters& o) {
     depthMax = std::max(depthMax, o.depthMax);
     peakFrameBytes = std::max(peakFrameBytes, o.peakFrameBytes);
     threadBytes = std::max(threadBytes, o.threadBytes);
+    if (media.size() < o.media.size()) media.resize(o.media.size());
+    for (size_t i = 0; i < o.media.size(); ++i) media[i].all += o.media[i].all, media[i].lost += o.media[i].lost;
 }
 
 uint64_t& Context::raysOf(RayType t) {

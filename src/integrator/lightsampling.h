@@ -76,7 +76,7 @@ private:
     void placeFar(const BoundLight&, const shading::Batch&, size_t at, LightBlock&) const;
     bool asksShadowDisk(const BoundLight&, const shading::Batch&, size_t at, LightValue&);
 
-    std::vector<uint64_t> given_;     ///< by point: the light whose outputs were kept last, and which samples
+    std::vector<uint32_t> given_;     ///< by point: the light whose outputs were kept last, counted from 1; 0: none
     std::vector<float> lamp_;         ///< LightRows of VertexBlocks::litBlocks
     std::vector<BlockPlaced> placed_; ///< by litBlocks
     std::vector<std::unique_ptr<const shading::ParameterRows>> parameters_; ///< by light

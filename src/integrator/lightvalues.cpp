@@ -83,10 +83,9 @@ void LightSampling::chooseSent(const BoundLight& light, std::span<const float> v
     }
 }
 
-/// Keeps what the light writes to AOVs at its first sample at a point, of several call sites and of kDrawsAtOnce samples.
+/// Keeps what the light writes to AOVs at its first sample at a point, whatever the number of its call sites and samples.
 void LightSampling::keepChannels(const BoundLight& light, std::span<const float> values, BatchContext& c) {
-    constexpr uint32_t kDrawsAtOnce = 16;
-    const uint64_t now = (uint64_t(v_.numberOf(light)) + 1) << 32 | v_.draw / kDrawsAtOnce;
+    const uint32_t now = uint32_t(v_.numberOf(light)) + 1;
     given_.resize(v_.points, 0);
     for (size_t k = 0; k < v_.asked.size(); ++k) {
         const size_t point = size_t(v_.asked[k].point);

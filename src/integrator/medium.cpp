@@ -31,7 +31,6 @@ constexpr double kDeepInside = 300;
 constexpr float kThin = 2; ///< length of a FreeFlight::thin segment, mean free paths
 /// So deep inside a path scatters at least so often; at twice the depth half as often.
 constexpr double kScatteredForCertain = 64;
-constexpr int kLeaksSaid = 16; ///< rays that leave a medium without a boundary; rounding at edges causes a few
 
 /// (1 - exp(-x)) / x.
 double meanLeft(double x) { return x < 1e-5 ? 1 - 0.5 * x : (1 - exact::exp(-x)) / x; }
@@ -65,17 +64,12 @@ void MediumEvents::glow(const RaySegment& f, const Homogeneous& h, Sched& sched)
 }
 
 bool MediumEvents::leaks(const RaySegment& f) {
+    const size_t medium = size_t(f.ray->medium());
+    if (counters_.media.size() <= medium) counters_.media.resize(medium + 1);
+    MediumSegments& count = counters_.media[medium];
+    ++count.all;
     if (f.point) return false;
-    const Medium& m = world_.media_[size_t(f.ray->medium())];
-    if (++leaks_ == kLeaksSaid)
-        diagnostics_.reportOnce("leak:" + m.shader->name,
-                                {Severity::Warning,
-                                 Rie::Consistency,
-                                 m.shape ? m.shape->place() : m.shader->place,
-                                 "rays leave the scene inside of the medium \"" + m.shader->name +
-                                     "\": the primitive whose Interior it is does not enclose it; these rays see no medium",
-                                 "close the surface: a medium extends from a surface to the next one behind it",
-                                 {}});
+    ++count.lost;
     return true;
 }
 

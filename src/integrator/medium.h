@@ -74,7 +74,7 @@ private:
         Color weight;
         bool stops = false;
     }; ///< weight: of the ray at the start of the segment
-    bool leaks(const RaySegment&); ///< whether the ray left the scene inside a medium; warns once
+    bool leaks(const RaySegment&); ///< whether the ray left the scene inside a medium; counts
     std::optional<Crossing> cross(RaySegment&, size_t flight, Vec2 random, Sched&);
     void pass(RaySegment&, Sched&);
     void scatter(std::span<RaySegment>, std::span<const Crossing>, Sched&);
@@ -87,7 +87,6 @@ private:
     std::vector<Crossing> crossings_;
     render::NumberRows numbers_;
     std::vector<Vec3> lights_;
-    int leaks_ = 0; ///< rays that left the scene inside of a scattering medium
     Accumulator& accumulator_;
     Atmosphere& atmosphere_;
     BatchPool& batches_;

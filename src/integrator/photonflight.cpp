@@ -263,7 +263,7 @@ bool PhotonFlight::extendAt(size_t b, size_t i, BatchContext& c) {
     const ShadePoint& p = c.points[point];
     const PathRay& from = c.rays[point];
     Vec3 w = rowsAt(next.direction, i);
-    if (p.shape->oneSided() && !(dot(w, intersectsNormal(p.surface)) > 0)) return false; // invisible from there
+    if (!c.between && p.shape->oneSided() && !(dot(w, intersectsNormal(p.surface)) > 0)) return false; // invisible from there
     const Color colour = rowsAt(next.colour, i), request = rowsAt(l.weight, i);
     const Color f = next.single >> i & 1 ? colour : next.pdf[i] > 0 ? colour / next.pdf[i] : Color(0);
     const float indirect = (s.lighting && !s.walks ? v_.vertices[b].energyScale[i] : 1) * v_.indirectOf(s, point);

@@ -12,6 +12,11 @@ struct GridPoint; // shading/gridpoint.h
 
 namespace alpenglow::integrator {
 
+/// Segments of rays in a medium that scatters.
+struct MediumSegments {
+    uint64_t all = 0, lost = 0; ///< lost: no surface ends them, so the medium has no end there
+};
+
 /// Counts of one integrator thread; the renderer adds them up.
 struct Counters {
     uint64_t camera = 0, diffuse = 0, specular = 0, transmission = 0, shadow = 0;
@@ -29,8 +34,9 @@ struct Counters {
     static constexpr double kLightUnit = 0x1p-20;
     uint64_t records = 0, interpolated = 0; ///< irradiance records made, and lookups interpolated from them
     int depthMax = 0;
-    size_t peakFrameBytes = 0; ///< largest size of suspended kernel frames at one time, over all threads
-    size_t threadBytes = 0;    ///< most memory of rays, points, columns and frames of one thread
+    size_t peakFrameBytes = 0;         ///< largest size of suspended kernel frames at one time, over all threads
+    size_t threadBytes = 0;            ///< most memory of rays, points, columns and frames of one thread
+    std::vector<MediumSegments> media; ///< by WorldImpl::media_; may be shorter
     void operator+=(const Counters&);
 };
 

@@ -2,6 +2,7 @@
 #include "base/printable.h"
 #include "scene/scene.h"
 #include <algorithm>
+#include <fmt/format.h>
 
 namespace alpenglow::render {
 namespace {
@@ -61,6 +62,23 @@ void sayTurnedAway(const Job& job, Diagnostics& diags) {
                  (f.shadeop == "occlusion" ? "all its rays are blocked: it returns 1" : "the primitive itself blocks its rays"),
              "faceforward(normalize(N), I) is the normal of the side that is seen; ReverseOrientation turns those of the "
              "primitive");
+    }
+}
+
+void sayOpenMedia(const Job& job, const integrator::Counters& counters, Diagnostics& diags) {
+    // Rounding at the edges of a closed surface loses about one ray of a million.
+    constexpr uint64_t kFew = 16, kPart = 1000;
+    if (job.interrupted || !job.world) return;
+    for (size_t i = 0; i < counters.media.size(); ++i) {
+        const integrator::MediumSegments& m = counters.media[i];
+        if (m.lost < kFew || m.lost < m.all / kPart) continue;
+        const world::World::NamedMedium medium = job.world->medium(i);
+        diags.report(
+            Severity::Warning, Rie::Consistency, medium.place,
+            fmt::format("{} of {} rays in the medium \"{}\" leave the scene: the primitive whose Interior or Exterior it is "
+                        "does not enclose it; these rays see no medium",
+                        m.lost, m.all, medium.shader),
+            "close the surface: a medium extends from a surface to the next one behind it");
     }
 }
 

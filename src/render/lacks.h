@@ -19,4 +19,7 @@ void sayTurnedAway(const Job&, Diagnostics&);
 /// and interrupted frames.
 void sayEmptyClouds(const Job&, Diagnostics&);
 
+/// After the frame: warns about each scattering medium out of which a noticeable part of its rays goes without a surface.
+void sayOpenMedia(const Job&, const integrator::Counters&, Diagnostics&);
+
 } // namespace alpenglow::render

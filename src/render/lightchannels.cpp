@@ -67,6 +67,11 @@ std::string namesForMessages() {
 
 } // namespace
 
+void sayNeedsPath(const std::string& output, const SourcePlace& place, Diagnostics& diags) {
+    diags.report(Severity::Error, Rie::Incapable, place,
+                 "\"" + output + "\": outputs by light path" + namesForMessages() + " need Hider \"path\"; it is 0");
+}
+
 std::optional<Source> computedOutput(std::string_view name) {
     for (size_t i = 0; i < std::size(kComputed); ++i)
         if (name == kComputed[i].name) return sourceOf(i);
@@ -85,11 +90,8 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
     const scene::Param* given = params == o.displayChannelParams.end() ? nullptr : scene::find(params->second, "source");
     const std::string source = given && !given->strings.empty() ? given->strings[0] : "";
     const SourcePlace& place = given ? given->place : display;
-    const auto only = [&](Source s) { // under path only, with a fixed width
-        if (!plan.basis.path)
-            diags.report(Severity::Error, Rie::Incapable, place,
-                         "\"" + v.name + "\": outputs by light path" + namesForMessages() + " need Hider \"path\"; it is 0");
-        if (v.channels.size() == widthOf(s)) return true;
+    const auto fix = [&](Source s) { // its width
+        if (v.channels.size() == widthOf(s)) return;
         if (v.typed)
             diags.report(Severity::Error, Rie::Consistency, place,
                          "\"" + v.name + "\" has " + std::to_string(v.channels.size()) + " numbers; its source has " +
@@ -97,7 +99,10 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
                          widthOf(s) == 3 ? "DisplayChannel \"color " + v.name + "\"" : "DisplayChannel \"float " + v.name + "\"");
         v.channels = {v.name};
         if (widthOf(s) == 3) v.channels = {v.name + ".r", v.name + ".g", v.name + ".b"};
-        return true;
+    };
+    const auto only = [&](Source s) {
+        if (!plan.basis.path) sayNeedsPath(v.name, place, diags);
+        fix(s);
     };
     if (const auto expression = scene::lightPathIn(source.empty() ? v.name : source)) {
         v.source = Source::Light;
@@ -117,11 +122,11 @@ void setSource(OutputVariable& v, const scene::Options& o, OutputPlan& plan, con
     if (!source.empty()) {
         v.source = *named;
         only(v.source);
-    } else { // a shader may have an output of that name
+    } else { // a shader may have an output of that name: OutputPlan::resolve()
         v.instead = *named;
         if (!v.typed) {
             v.color = widthOf(v.instead) == 3;
-            only(v.instead);
+            fix(v.instead);
         }
     }
 }

@@ -148,8 +148,10 @@ void OutputPlan::resolve(std::vector<int> widths, Diagnostics& diags, const std:
     for (OutputSpec& p : pictures)
         for (OutputVariable& v : p.variables) {
             if (v.source == Source::Engine && v.instead != Source::Engine &&
-                std::find(missing.begin(), missing.end(), v.name) != missing.end())
+                std::find(missing.begin(), missing.end(), v.name) != missing.end()) {
                 v.source = v.instead;
+                if (!basis.path) sayNeedsPath(v.name, p.place, diags);
+            }
             if (v.source != Source::Engine || int(v.channels.size()) == engineWidths[size_t(v.engine)]) continue;
             int w = engineWidths[size_t(v.engine)];
             if (v.typed)

@@ -105,6 +105,8 @@ void filmValues(const OutputPlan&, const integrator::SampleResult&, std::vector<
 // Outputs that are not shader outputs (lightchannels.cpp).
 /// Sets the source of a variable by "source" of its DisplayChannel, or by a predefined name.
 void setSource(OutputVariable&, const scene::Options&, OutputPlan&, const SourcePlace&, Diagnostics&);
+/// The error about an output that only the hider path has.
+void sayNeedsPath(const std::string& output, const SourcePlace&, Diagnostics&);
 /// Sets OutputPlan::lightPaths.
 void joinLightPaths(OutputPlan&, Diagnostics&);
 /// Append film channels and their values; and the values of images after the engine's floats.

@@ -468,6 +468,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
         sayEmptyPicture(job, *f.frame, diagnostics_);
         sayEmptyClouds(job, diagnostics_);
         sayTurnedAway(job, diagnostics_);
+        sayOpenMedia(job, c, diagnostics_);
     }
     const world::World::Facts facts = f.world->facts(); // kernels may be compiled during rendering
     stats_.shading.kernels = facts.kernels;

@@ -91,36 +91,7 @@ bool Job::pollStop() {
 
 integrator::Counters Job::counters() const {
     integrator::Counters all = earlier_;
-    for (const auto& t : tracers) {
-        const integrator::Counters& c = t->counters();
-        all.camera += c.camera;
-        all.diffuse += c.diffuse;
-        all.specular += c.specular;
-        all.transmission += c.transmission;
-        all.shadow += c.shadow;
-        all.reflected += c.reflected;
-        all.refracted += c.refracted;
-        all.totalReflected += c.totalReflected;
-        all.ignored += c.ignored;
-        all.tests += c.tests;
-        all.hits += c.hits;
-        all.points += c.points;
-        all.batches += c.batches;
-        all.lanesUsed += c.lanesUsed;
-        all.lanesRun += c.lanesRun;
-        all.nonFinite += c.nonFinite;
-        all.overLimit += c.overLimit;
-        all.depthCap += c.depthCap;
-        all.depthSum += c.depthSum;
-        all.paths += c.paths;
-        all.guided += c.guided;
-        all.guidedLit += c.guidedLit;
-        all.guidedLight += c.guidedLight;
-        all.records += c.records;
-        all.interpolated += c.interpolated;
-        all.depthMax = std::max(all.depthMax, c.depthMax);
-        all.threadBytes = std::max(all.threadBytes, c.threadBytes);
-    }
+    for (const auto& t : tracers) all += t->counters();
     return all;
 }
 

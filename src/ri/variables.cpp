@@ -1,4 +1,4 @@
-// Variables in the texts of requests: Option "ribparse" "varsubst" (PRMan).
+// Variables in the texts of requests: Option "ribparse" "varsubst" (PRMan; of "rib" in ricpp).
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/requests/request.h"
@@ -43,7 +43,7 @@ Call Interpreter::withVariables(const Call& given) {
     Call call = given;
     const std::string_view name = call.request->name;
     if (name == "IfBegin" || name == "ElseIf") return call; // they name variables
-    if (name == "Option" && call.given(0) && call.text(0) == "ribparse") return call;
+    if (name == "Option" && call.given(0) && (call.text(0) == "ribparse" || call.text(0) == "rib")) return call;
     const auto mark = options.values.find("ribparse:varsubst");
     if (mark == options.values.end() || mark->second.strings.empty() || mark->second.strings[0].empty()) return call;
     const char c = mark->second.strings[0][0];

@@ -38,7 +38,8 @@ void addQuery(std::vector<Shadeop>& list, const char* name, Lowering lowering, u
 
 /// Adds one about the ray, without arguments.
 void addRayFunction(std::vector<Shadeop>& list, const char* name, const char* doc) {
-    addMessage(list, name, sigs({{(std::string("float ") + name + "()").c_str()}}), Lowering::Service, kSurface | kVolume, doc);
+    addMessage(list, name, sigs({{(std::string("float ") + name + "()").c_str()}}), Lowering::Service, kSurface | kVolume, doc)
+        .derivative = DerivativeRule::Zero; // a whole number
 }
 
 /// Parameters of the shaders about the point.

@@ -4,6 +4,7 @@
 #include "world/cloudsite.h"
 #include "world/cloudstore.h"
 #include "world/impl.h"
+#include <cmath>
 
 namespace alpenglow::world {
 
@@ -21,6 +22,16 @@ bool bakesAt(const WorldImpl& w, const SurfaceBinding& b) {
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) bakes |= bakesAt(*k);
     if (!bakes) w.eachLight(b.lights, [&](int l) { return bakes |= bakesAt(w.lights_[size_t(l)].kernel); });
     return bakes;
+}
+
+/// Sets du and dv of a point so that area(P) is that of its part of the surface: what shaders give as "_area" adds up to the area
+/// of the surface. Of all such pairs, the one of sides that are alike. Where the surface has no area they stay those of the
+/// pixel.
+void setSize(shading::GridPoint& g, const geometry::SurfacePoint& p) {
+    const float u = length(p.dPdu), v = length(p.dPdv), across = length(cross(p.dPdu, p.dPdv));
+    const float side = std::sqrt(g.area * u * v / across);
+    if (!(across > 0) || !(side > 0) || !std::isfinite(side / u) || !std::isfinite(side / v)) return;
+    g.du = side / u, g.dv = side / v;
 }
 
 } // namespace
@@ -82,8 +93,9 @@ void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPo
     size_t kept = before;
     for (size_t i = before; i < to.size(); ++i) {
         to[i].shape = shape;
-        if (w.accel_->hasSolids() && !w.accel_->keeps(shape, P[i - before], s.evaluateHit(to[i].prim, to[i].b1, to[i].b2).n, 0))
-            continue;
+        const geometry::SurfacePoint at = s.evaluateHit(to[i].prim, to[i].b1, to[i].b2);
+        if (w.accel_->hasSolids() && !w.accel_->keeps(shape, P[i - before], at.n, 0)) continue;
+        setSize(to[i], at);
         to[kept++] = to[i];
     }
     to.resize(kept);

@@ -46,6 +46,7 @@ public:
     std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
     std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const override;
     std::vector<FlippedNormalsCall> callsTurnedAway() const override { return turnedAway_.blocked(); }
+    NamedMedium medium(size_t) const override;
     std::vector<std::string> knownOutputs() const override;
     void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
     bool interpolates() const override { return needs_.records; }

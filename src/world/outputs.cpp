@@ -96,6 +96,12 @@ std::set<const ShaderInstance*> WorldImpl::givers() const {
     return shaders;
 }
 
+World::NamedMedium WorldImpl::medium(size_t index) const {
+    if (index >= media_.size()) return {};
+    const Medium& m = media_[index];
+    return {m.shader->name, m.shape ? m.shape->place() : m.shader->place};
+}
+
 std::vector<std::pair<std::string, SourcePlace>> WorldImpl::cloudsFoundEmpty() const {
     return clouds_ ? clouds_->foundNothing() : std::vector<std::pair<std::string, SourcePlace>>();
 }

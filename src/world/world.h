@@ -54,6 +54,12 @@ public:
         size_t primitives = 0;
     };
     virtual std::vector<FlippedNormalsCall> callsTurnedAway() const { return {}; }
+    /// The shader of a medium, and its first primitive's place; integrator::Counters::media has the order.
+    struct NamedMedium {
+        std::string shader;
+        SourcePlace place;
+    };
+    virtual NamedMedium medium(size_t) const { return {}; }
     /// The photon maps of the frame (photonstore.h).
     virtual PhotonStore* photons() const { return nullptr; }
     /// Valid output names for suggestions: predefined variables and outputs of the frame's shaders.

@@ -139,4 +139,25 @@ TEST(SidesOne, Photons) {
     EXPECT_NEAR(landed(kLamp + white + kLambert + kFloor, 1), above, .12 * above);
 }
 
+// A fog that only scatters, in a ball of one side: all light of the lamp in it comes out, whatever the way of the normals. A wall
+// around it receives 4 PI I, times PI for what diffuse() calls irradiance.
+TEST(SidesOne, PhotonsScatterInAMedium) {
+    for (const char* sides : {"Sides 2\n", "Sides 1\n", "Sides 1 ReverseOrientation\n"}) {
+        const std::string fog = "AttributeBegin\nSurface \"null\"\nInterior \"medium\" \"color scattering\" [2 2 2] \"color "
+                                "absorption\" [0 0 0]\n" +
+                                std::string(sides) + "Sphere 1 -1 1 360\nAttributeEnd\n";
+        Scene s(inWorld("LightSource \"pointlight\" 1 \"float intensity\" 1\n" + fog +
+                        "Surface \"matte\" \"float Ka\" 0 \"float Kd\" .001\nSphere 3 -3 3 360\n"),
+                of(Hider::Path));
+        PhotonEmission emission(s.world, {}, s.diagnostics);
+        PhotonEmission::Thread thread(emission, s.diagnostics);
+        std::vector<StoredPhoton> all;
+        EXPECT_TRUE(thread.emit(0, 0, 20'000, 20'000, all, nullptr));
+        double sum = 0;
+        for (const StoredPhoton& p : all)
+            if (length(p.photon.P) > 2) sum += double(p.photon.power.x);
+        EXPECT_NEAR(sum / (4 * kPi * kPi), 1, .02) << sides;
+    }
+}
+
 } // namespace sides_test

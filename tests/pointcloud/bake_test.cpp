@@ -134,6 +134,32 @@ TEST_F(Bake, WholeSpheres) {
     pointcloud::test::expectSame(cloud("hidden.ptc"), cloud("path.ptc"));
 }
 
+// What shaders of PRMan give as "_area" adds up to the area of the surface, however small it looks from the eye: floors that are
+// seen at a flat angle, the far side of a ball, at each ShadingRate.
+TEST_F(Bake, AreasThatShadersGive) {
+    const struct {
+        std::string shape;
+        double area;
+    } shapes[] = {{"Sphere 1 -1 1 360\n", 4 * kPi},
+                  {"Polygon \"P\" [-1 -1 -1  1 -1 -1  1 -1 1  -1 -1 1]\n", 4},
+                  {"Scale 2 1 3 Patch \"bilinear\" \"P\" [-1 0 -1  1 0 -1  -1 0 1  1 0 1]\n", 24},
+                  {"Rotate 80 1 0 0 Cylinder .5 -1 1 360\n", 2 * kPi}};
+    for (const char* interpolate : {"0", "1"}) {
+        writeShader("baker", std::string("bake3d(\"b.ptc\", \"\", P, normalize(N), \"interpolate\", ") + interpolate +
+                                 ", \"_area\", area(P, \"dicing\"));");
+        for (const char* rate : {"1", "9"})
+            for (const auto& s : shapes) {
+                write("a.rib",
+                      header("a.exr") + begin + "ShadingRate " + rate + "\nSurface \"baker\"\n" + s.shape + "WorldEnd\n");
+                quiet("render a.rib -t 2");
+                const pointcloud::PointCloud c = cloud("b.ptc");
+                double area = 0;
+                for (size_t i = 0; i < c.size(); ++i) area += double(c.valuesOf(i)[size_t(c.offsetOf("_area"))]);
+                EXPECT_NEAR(area, s.area, .03 * s.area) << s.shape << rate << interpolate; // the cells of round shapes are flat
+            }
+    }
+}
+
 TEST_F(Bake, CornersAndMiddlesOfPolygons) {
     writeShader("baker", "bake3d(\"c.ptc\", \"\", P, N, \"coordsystem\", \"object\"); bake3d(\"m.ptc\", \"\", P, N, "
                          "\"interpolate\", 1, \"radius\", .25, \"radiusscale\", 2);");

@@ -49,6 +49,18 @@ TEST(LightChannels, NamesAndSources) {
     EXPECT_EQ(back->first.lightParts, plan.lightParts);
 }
 
+// Outside of path a name that path computes is a shader's, if one has it; else it is an error.
+TEST(LightChannels, NamesThatAShaderHas) {
+    Diagnostics d;
+    OutputPlan plan = planOutputs(asking("albedo,normal", {}), {}, false, "", d);
+    EXPECT_EQ(d.all().size(), 0u);
+    plan.resolve({3, 3}, d, {"normal"});
+    ASSERT_EQ(d.all().size(), 1u);
+    EXPECT_NE(d.all()[0].message.find("\"normal\""), std::string::npos);
+    EXPECT_EQ(plan.pictures[0].variables[0].source, Source::Engine);
+    EXPECT_EQ(plan.pictures[0].variables[0].channels, (std::vector<std::string>{"albedo.r", "albedo.g", "albedo.b"}));
+}
+
 TEST(LightChannels, ExpressionsInAMode) {
     Diagnostics d;
     const OutputPlan plan = planOutputs(asking("a,lpe:C<RD>L,lpe:C<L.'key light'>", {}), {}, true, "", d);

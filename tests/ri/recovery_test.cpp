@@ -245,6 +245,22 @@ TEST(Foreign, LaterNamesOfTheSameThings) {
     EXPECT_EQ(c->primitive().attributes->interior->name, "haze");
 }
 
+// Aqsis and 3Delight run the layers of a type one after the other: the last one's result is what stays.
+TEST(Foreign, TheLastLayerIsTheShader) {
+    const std::string layers =
+        "ShaderLayer \"surface\" \"texmap\" \"one\" \"string texturename\" \"a.tex\"\n"
+        "ShaderLayer \"surface\" \"matte\" \"two\" \"Kd\" .5\nShaderLayer \"displacement\" \"dented\" \"d\"\n";
+    auto c = inWorld(layers + "Sphere 1 -1 1 360");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    EXPECT_EQ(c->primitive().attributes->surface->name, "matte");
+    ASSERT_EQ(c->primitive().attributes->surface->params.size(), 1u);
+    EXPECT_EQ(c->primitive().attributes->surface->params[0].name, "Kd");
+    EXPECT_EQ(c->primitive().attributes->displacement->name, "dented");
+    auto connected = inWorld(layers + "ConnectShaderLayers \"surface\" \"one\" \"Cout\" \"two\" \"Cs\"\nSphere 1 -1 1 360");
+    EXPECT_NE(connected->only().message.find("\"Cs\" of the layer \"two\""), std::string::npos) << connected->messages();
+    EXPECT_EQ(inWorld("ShaderLayer \"colour\" \"matte\" \"a\" Sphere 1 -1 1 360")->only().code, Rie::BadToken);
+}
+
 TEST(Foreign, ArchiveOfAProcedure) {
     auto c = read("ArchiveBegin \"part.rib\"\nColor 0 1 0\nSphere 1 -1 1 360\nArchiveEnd\n"
                   "WorldBegin\nProcedural2 \"DelayedReadArchive2\" \"SimpleBound\" \"float[6] bound\" [-1 1 -1 1 -1 1] \"string "

@@ -50,6 +50,17 @@ TEST(VariablesInTexts, StandForWhatConditionsHave) {
     EXPECT_EQ(surface->params[0].strings[0], "w.tx:w.tx");
 }
 
+// ricpp has it in another category, with the same meaning; the later of both holds.
+TEST(VariablesInTexts, HaveASecondName) {
+    const std::string user = "Option \"user\" \"string look\" [\"matte\"]\n", world = "WorldBegin\nSphere 1 -1 1 360\nWorldEnd\n";
+    const auto c = read("Option \"rib\" \"string varsubst\" \"$\"\n" + user + "Surface \"${look}\"\n" + world);
+    EXPECT_EQ(c->messages(), "");
+    EXPECT_EQ(c->primitive().attributes->surface->name, "matte");
+    const auto off =
+        read("Option \"rib\" \"varsubst\" \"$\"\n" + user + "Option \"ribparse\" \"varsubst\" \"\"\nSurface \"$look\"\n" + world);
+    EXPECT_EQ(off->primitive().attributes->surface->name, "$look");
+}
+
 TEST(VariablesInTexts, StayWhereNothingIsSet) {
     const auto c = read("Option \"ribparse\" \"string varsubst\" [\"$\"]\nDisplay \"${none}$none.$5 $ ${} ${a.tif\" \"file\" "
                         "\"rgb\"\nWorldBegin\nWorldEnd\n");

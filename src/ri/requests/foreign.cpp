@@ -13,8 +13,28 @@ template <scene::ShaderRef scene::Attributes::* Slot> void volumeShader(Interpre
     in.attributes().*Slot = c.text(0).empty() || c.text(0) == "null" ? nullptr : in.shader(c);
 }
 
+/// The layers of a type run one after the other, so the last one leaves its result: it is the shader of the primitive.
 void layer(Interpreter& in, const Call& c) {
-    in.incapable(c, "layers of shaders that the scene connects are not done by this version; co-shaders (Shader) are");
+    using A = scene::Attributes;
+    constexpr std::pair<std::string_view, scene::ShaderRef A::*> kSlots[] = {
+        {"surface", &A::surface},   {"displacement", &A::displacement}, {"atmosphere", &A::atmosphere},
+        {"volume", &A::atmosphere}, {"interior", &A::interior},         {"exterior", &A::exterior}};
+    for (const auto& [type, slot] : kSlots)
+        if (c.text(0) == type) {
+            Call shader = c;
+            shader.arguments.erase(shader.arguments.begin());
+            in.attributes().*slot = in.shader(shader);
+            return;
+        }
+    in.reporter.error(Rie::BadToken, c.place, fmt::format("ShaderLayer: \"{}\" is not known", c.text(0)),
+                      "surface, displacement, atmosphere, interior or exterior");
+}
+
+void connectLayers(Interpreter& in, const Call& c) {
+    in.incapable(
+        c, fmt::format("layers of shaders are not connected by this version: \"{}\" of the layer \"{}\" keeps its own value; "
+                       "a co-shader (Shader) can give it",
+                       c.text(4), c.text(3)));
 }
 
 /// The procedurals by named parameters: "DelayedReadArchive2" and its kin.
@@ -58,10 +78,11 @@ std::vector<Request> foreignRequests() {
         {"VPSurface", "string name; ..", Kind::Shader, any, true, "The shader at the bound of a volume: not done.", "\"fog\"",
          notDone},
         {"ShaderLayer", "string type; string name; string layer; ..", Kind::Shader, any, false,
-         "A layer of a shader network (Aqsis, 3Delight): not done.", "\"surface\" \"plastic\" \"base\" \"Kd\" .4", layer},
+         "A layer of a shader network (Aqsis, 3Delight). The last one of a type is the shader of what follows.",
+         "\"surface\" \"plastic\" \"base\" \"Kd\" .4", layer},
         {"ConnectShaderLayers", "string type; string layer1; string variable1; string layer2; string variable2", Kind::Shader,
          any, false, "Connects two layers of a shader network (Aqsis, 3Delight): not done.",
-         "\"surface\" \"a\" \"Ci\" \"b\" \"Cs\"", layer},
+         "\"surface\" \"a\" \"Ci\" \"b\" \"Cs\"", connectLayers},
         {"Procedural2", "string subdivide; string bound; ..", Kind::Primitive, kWorld | kObject, false,
          "Content from an archive (\"DelayedReadArchive2\"), by named parameters, or with --allow-exec from a program "
          "(\"RunProgram2\": \"string command\", \"string data\") or a library (\"DynamicLoad2\": \"string dsoname\", \"string "

@@ -198,7 +198,8 @@ void option(Interpreter& in, const Call& c) {
     const std::string& category = c.text(0);
     for (scene::Param& p : in.bind(c, Use::Option, category)) {
         std::string key = category + ":" + p.name;
-        if (category == "searchpath" && !p.strings.empty()) { // "&" is the value so far
+        if (key == "rib:varsubst") key = "ribparse:varsubst"; // ricpp's name for it
+        if (category == "searchpath" && !p.strings.empty()) { // "&" stands for the value so far
             std::string before, now;
             if (auto i = in.options.values.find(key); i != in.options.values.end() && !i->second.strings.empty())
                 before = i->second.strings[0];

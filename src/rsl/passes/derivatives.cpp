@@ -88,8 +88,15 @@ struct Orders {
         }
     }
 
+    /// What rayinfo() counts is a whole number, so its derivative is 0.
+    static bool counts(const Site& s) {
+        return s.op == "rayinfo" && !s.strings.empty() &&
+               (s.strings[0] == "depth" || s.strings[0] == "speculardepth" || s.strings[0] == "diffusedepth");
+    }
+
     void opaque(const Inst* i) {
         const Site& s = k.sites[static_cast<size_t>(i->site)];
+        if (counts(s)) return;
         const DerivativeRule rule = s.shadeop ? s.shadeop->derivative : DerivativeRule::ZeroWarn;
         if (rule == DerivativeRule::ZeroWarn || (rule == DerivativeRule::Gradient && i->op != Op::Service)) // see gradients.h
             warn(i, msg::kZeroDerivative(s.op == "gatherturn" ? "what gather() brings" : s.op + "()"));

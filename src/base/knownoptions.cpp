@@ -8,6 +8,7 @@
 namespace alpenglow::known {
 namespace {
 
+constexpr std::string_view kOrigin = "PRMan; rays are traced in camera space";
 constexpr std::string_view kMemory = "several renderers; --memory-limit is for the whole program here";
 
 constexpr OptionDescription kOptions[] = {
@@ -167,6 +168,9 @@ constexpr OptionDescription kOptions[] = {
     {"trace:maxdepth", "int", "32 under path, else 4", "8", Used,
      "Greatest number of bounces of a ray; 0: no rays are traced. --max-depth overrides it."},
     {"trace:specularthreshold", "", "", "", Ignored, "several renderers; lobes are taken as they are, however rough"},
+    {"trace:worldoffset", "float[3]", "", "", Ignored, kOrigin},
+    {"trace:worldorigin", "", "", "", Ignored, kOrigin},
+    {"volume:aggregatespace", "", "", "", Ignored, "PRMan; the picture does not depend on how volumes are gathered"},
 };
 
 constexpr OptionDescription kHiderParameters[] = {

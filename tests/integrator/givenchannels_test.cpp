@@ -94,34 +94,6 @@ TEST(GivenChannels, OfAtmospheres) {
     }
 }
 
-// Of a light that reaches its call in half of its samples, as seen from below its middle: the first sample says, of any number.
-TEST(GivenChannels, OfTheFirstOfSeveralSamples) {
-    writeShader("tellshalf", R"(light tellshalf() {
-    illuminate(P, N, PI / 2) { Cl = 1; if (xcomp(transform("world", P)) > 0) outputchannel("told", 1); }
-}
-)");
-    writeShader("looksoften", R"(surface looksoften(uniform float samples = 1;) {
-    normal n = faceforward(normalize(N), I);
-    Ci = trace(P, n, "distribution", "oren-nayar", "roughness", .5, "samplelights", 1, "samples", samples);
-    Oi = 1;
-}
-)");
-    for (const int samples : {1, 8, 16, 40, 100}) {
-        Settings set = under(Hider::Raytrace);
-        set.outputs = {"told"};
-        Scene s(
-            inWorld("AttributeBegin\nAreaLightSource \"tellshalf\" 1\nPatch \"bilinear\" \"P\" [-1 2 -1  1 2 -1  -1 2 1  1 2 1]\n"
-                    "AttributeEnd\nIlluminate 1 1\nSurface \"looksoften\" \"samples\" " +
-                    std::to_string(samples) + "\n" + kFloor),
-            set);
-        std::vector<CameraRay> rays(400, kView);
-        for (size_t i = 0; i < rays.size(); ++i) rays[i].sample = uint32_t(i);
-        double sum = 0;
-        for (const auto& r : s.trace(rays)) sum += double(r.aovs.at(0));
-        EXPECT_NEAR(sum / 400, .5, .13) << samples; // five standard deviations of 400 coins
-    }
-}
-
 } // namespace
 
 } // namespace givenchannels_test

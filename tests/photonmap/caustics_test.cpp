@@ -277,7 +277,7 @@ TEST(Caustics, TogetherAsPathsAlone) {
     for (const CausticScene& c : causticScenes()) {
         Scene s(inWorld(c.scene), path());
         const Moments plain = s.estimate(c.ray, samples(40000));
-        const uint32_t count = nightly() ? 100 : 24;
+        const uint32_t count = nightly() ? 100 : 40;
         passes(s, count, 10000, .06f);
         expectSame(estimate(s, c.ray, count, nightly() ? 100 : 40), plain, (nightly() ? 1 : 2) * c.precision, c.name);
     }

@@ -120,4 +120,28 @@ TEST(PhotonGather, PathsLeaveToPhotonsWhatTheyBring) {
     }
 }
 
+// A distant light at 60 degrees through a flat sheet of glass of index 1.5 whose roughness is small, so that photons follow its
+// lobe as they follow a mirror. What the sheet does not reflect arrives below it, by Fresnel's equations: .911. Refraction in
+// shaders keeps radiance, which comes from a narrower cone: the flux is that over the square of the index. 5 % for the roughness.
+TEST(PhotonFlux, ThroughANarrowLobe) {
+    writeShader("roughpane", "surface roughpane() { Oi = 1; Ci = trace(P, normalize(N), \"distribution\", \"glass-ggx\", "
+                             "\"roughness\", .05, \"eta\", 1.5, \"samplearealights\", 1, \"type\", \"specular\"); }\n");
+    Scene s(
+        inWorld("LightSource \"distantlight\" 1 \"float intensity\" 2 \"from\" [1.7320508 1 0] \"to\" [0 0 0]\nAttributeBegin "
+                "Surface \"roughpane\" Polygon \"P\" [-6 1 -6  -6 1 6  6 1 6  6 1 -6] AttributeEnd\n"
+                "Surface \"matte\" \"float Ka\" 0 \"float Kd\" .5\n"
+                "Polygon \"P\" [-3 0 -3  -3 0 3  3 0 3  3 0 -3]\n"),
+        withShaders(Hider::Path));
+    const double cosine = .5, refracted = std::sqrt(1 - .75 / 2.25), s1 = (cosine - 1.5 * refracted) / (cosine + 1.5 * refracted),
+                 p1 = (1.5 * cosine - refracted) / (1.5 * cosine + refracted), passes = 1 - (s1 * s1 + p1 * p1) / 2;
+    double flux = 0;
+    PhotonEmission emission(s.world, {.all = true, .sky = false, .caustics = true, .width = .1f}, s.diagnostics);
+    PhotonEmission::Thread thread(emission, s.diagnostics);
+    std::vector<StoredPhoton> found;
+    ASSERT_TRUE(thread.emit(0, 0, 60000, 60000, found, nullptr));
+    for (const StoredPhoton& p : found)
+        if (std::fabs(p.photon.P.x) < 2 && std::fabs(p.photon.P.z) < 2 && p.photon.P.y < .5f) flux += double(p.photon.power.x);
+    EXPECT_NEAR(flux / 16, 2 * kPi * cosine * passes / 2.25, .05 * 2 * kPi * cosine / 2.25); // intensity is irradiance over pi
+}
+
 } // namespace photongather_test

@@ -61,6 +61,13 @@ TEST(AreaLights, Radiance) {
     expectMean(under("plainarea", "illuminate(P) Cl = intensity;", Hider::Path, ""), want, .01, "path");
 }
 
+// Under path one that divides by the squared distance itself has an intensity, which is spread over its surface: I pi / A of
+// radiance, so Lambert's formula has the area no more.
+TEST(AreaLights, ItsOwnFalloffUnderPath) {
+    const double want = 3 * overSquare(1, 2, [](Vec3d p) { return p.y * p.y / (dot(p, p) * dot(p, p)); });
+    expectMean(under("fallsoffall", "illuminate(P) Cl = intensity / (L . L);", Hider::Path, ""), want, .004, "path");
+}
+
 // An emitter with Sides 1 sends nothing to where its rays pass through it: light samples and rays agree.
 TEST(AreaLights, OneSidedFromBehind) {
     writeShader("plainarea", "light plainarea(float intensity = 3;) { illuminate(P) Cl = intensity; }\n");

@@ -22,12 +22,7 @@ TEST(BlockCalls, FollowLobesToTheDepthsOfTheirSurfaces) {
         for (const auto& [diffuse, specular] : {std::pair(0, 0), {1, 0}, {0, 2}, {2, -1}, {-1, 1}}) {
             const std::string rib = roomOf("\"two\"", "Attribute \"trace\" \"int maxdiffusedepth\" " + std::to_string(diffuse) +
                                                           " \"int maxspeculardepth\" " + std::to_string(specular) + "\n" + more);
-            const Traced one = trace(rib, false), all = trace(rib, true), narrow = trace(rib, true, 4);
-            EXPECT_GT(sumOf(one), 1) << more << diffuse << specular;
-            EXPECT_EQ(differences(one, all), 0u) << more << diffuse << specular;
-            EXPECT_EQ(differences(one, narrow), 0u) << more << diffuse << specular;
-            EXPECT_EQ(one.cut, all.cut) << more << diffuse << specular;
-            EXPECT_GT(all.inRows, all.points / 3) << more << diffuse << specular;
+            expectSameBits(rib, pathSettings(), .3, more + std::to_string(diffuse) + std::to_string(specular));
         }
 }
 
@@ -83,13 +78,7 @@ TEST(BlockCalls, FollowLoopsAndWalksBelowSurfaces) {
         for (const std::string& more : {std::string(), sky, shallow, sky + "Opacity .5 .6 .7\n", fog})
             for (const Settings& s : {pathSettings(), local}) {
                 if (!chosen(turn++, 3)) continue;
-                const std::string rib = roomOf(shader, more);
-                const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);
-                EXPECT_GT(sumOf(one), 1) << shader << more;
-                EXPECT_EQ(one.inRows, 0u);
-                EXPECT_GT(all.inRows, all.points / 3) << shader << more;
-                EXPECT_EQ(differences(one, all), 0u) << shader << more;
-                EXPECT_EQ(differences(one, trace(rib, true, 4, -1, s)), 0u) << shader << more;
+                expectSameBits(roomOf(shader, more), s, .3, shader + more);
             }
 }
 
@@ -108,12 +97,8 @@ TEST(BlockCalls, SampleLightsThatFilterOverTheirSurfaceOrReadN) {
     const std::string fog = "AttributeBegin\nSurface \"null\" Interior \"medium\" \"color scattering\" [.1 .12 .2]\n"
                             "Translate 0 0 5\nSphere 7.5 -7.5 7.5 360\nAttributeEnd\n";
     for (const std::string& more : {lamp, facing, lamp + fog, facing + fog, lamp + manyLights(6), facing + manyLights(6)}) {
-        const std::string rib = roomOf("\"facets\"", more);
-        const Traced one = trace(rib, false), all = trace(rib, true);
-        EXPECT_GT(sumOf(one), 1) << more;
-        EXPECT_EQ(differences(one, all), 0u) << more;
-        EXPECT_EQ(differences(one, trace(rib, true, 4)), 0u) << more;
-        if (more.find("__importancesample") == std::string::npos) EXPECT_GT(all.inRows, all.points / 3) << more;
+        const bool apart = more.find("__importancesample") != std::string::npos;
+        expectSameBits(roomOf("\"facets\"", more), pathSettings(), apart ? -1 : .3, more);
     }
 }
 
@@ -141,14 +126,7 @@ TEST(BlockCalls, FollowAllLobesUnderOtherHiders) {
                 Settings s;
                 s.hider = hider;
                 s.maxDepth = 3;
-                const std::string rib = roomOf(shader, more);
-                const Traced one = trace(rib, false, 16, 3, s), all = trace(rib, true, 16, 3, s);
-                EXPECT_GT(sumOf(one), 1) << shader << more;
-                EXPECT_EQ(one.inRows, 0u);
-                EXPECT_GT(all.inRows, all.points / 4) << shader << more << int(hider);
-                EXPECT_EQ(differences(one, all), 0u) << shader << more << int(hider);
-                EXPECT_EQ(differences(one, trace(rib, true, 4, 3, s)), 0u) << shader << more << int(hider);
-                EXPECT_EQ(one.cut, all.cut) << shader << more << int(hider);
+                expectSameBits(roomOf(shader, more), s, .25, shader + more + std::to_string(int(hider)), 3);
             }
 }
 

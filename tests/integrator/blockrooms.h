@@ -121,5 +121,26 @@ inline double sumOf(const Traced& t) {
     for (const SampleResult& s : t.samples) sum += s.color.x + s.color.y + s.color.z;
     return sum;
 }
+/// Lanes of kernels for requests in rows, and for those that are read one by one: 16 and 4, or 4 and 16. They take turns by room,
+/// so that one comparison tells of both; nightly a third trace tells of each alone.
+struct Widths {
+    explicit Widths(const std::string& rib) : rows(rib.size() % 2 ? 4 : 16), single(rib.size() % 2 ? 16 : 4) {}
+    int rows, single;
+};
+/// Traces a room with requests in rows and one by one, at both ends of the widths of kernels: the samples have the same bits, and
+/// paths are cut at the same places. least: of all points those whose requests must be in rows. Returns the one in rows.
+inline Traced expectSameBits(const std::string& rib, const Settings& s, double least, const std::string& what, int depth = -1) {
+    const Widths lanes(rib);
+    const Traced one = trace(rib, false, lanes.single, depth, s), all = trace(rib, true, lanes.rows, depth, s);
+    EXPECT_GT(sumOf(one), 1) << what;
+    EXPECT_EQ(one.inRows, 0u) << what;
+    EXPECT_GT(double(all.inRows), double(all.points) * least) << what;
+    EXPECT_EQ(one.cut, all.cut) << what;
+    const size_t found = differences(one, all);
+    EXPECT_EQ(found, 0u) << what << ", depth " << depth;
+    if (found > 0 || nightly())
+        EXPECT_EQ(differences(one, trace(rib, false, lanes.rows, depth, s)), 0u) << what << ", kernels of 4 and 16 lanes alone";
+    return all;
+}
 
 } // namespace alpenglow::integrator::testing

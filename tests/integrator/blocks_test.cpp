@@ -20,13 +20,7 @@ TEST(Blocks, HaveTheBitsOfSinglePoints) {
          {"\"matte\"", "\"plastic\"", "\"glossy\"", "\"facets\"", "\"cut\"", "\"slmaterial\"",
           "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.9 1 1] \"float shininess\" 9",
           "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color transmissive\" [1 1 1] \"float kn\" 1.5"}) {
-        const std::string rib = roomOf(shader);
-        const Traced one = trace(rib, false), all = trace(rib, true), narrow = trace(rib, true, 4);
-        EXPECT_GT(sumOf(one), 1) << shader;
-        EXPECT_EQ(one.inRows, 0u);
-        EXPECT_GT(all.inRows, all.points / 3) << shader; // shadow rays run "cut" for its opacity
-        EXPECT_EQ(differences(one, all), 0u) << shader;
-        EXPECT_EQ(differences(one, narrow), 0u) << shader << ", kernels of 4 lanes";
+        expectSameBits(roomOf(shader), pathSettings(), .3, shader); // shadow rays run "cut" for its opacity
     }
 }
 
@@ -46,13 +40,7 @@ TEST(Blocks, ChooseAmongManyLights) {
         "Polygon \"P\" [2 2 5  2 1 5  2 1 6  2 2 6]\nAttributeEnd\nIlluminate 88 1\nIlluminate 89 1\n";
     for (const char* shader : {"\"matte\"", "\"plastic\"", "\"both\"", "\"slmaterial\""})
         for (const std::string more : {"", "Opacity .5 .6 .7\n", own.c_str()}) {
-            const std::string rib = roomOf(shader, manyLights(1e38) + more);
-            const Traced one = trace(rib, false), all = trace(rib, true), narrow = trace(rib, true, 4);
-            EXPECT_GT(sumOf(one), 1) << shader;
-            EXPECT_EQ(one.inRows, 0u);
-            EXPECT_GT(all.inRows, all.points / 3) << shader;
-            EXPECT_EQ(differences(one, all), 0u) << shader << more;
-            EXPECT_EQ(differences(one, narrow), 0u) << shader << more << ", kernels of 4 lanes";
+            expectSameBits(roomOf(shader, manyLights(1e38) + more), pathSettings(), .3, shader + more);
         }
 }
 
@@ -87,14 +75,8 @@ TEST(Blocks, FollowWhatKernelsWaitFor) {
             size_t of = turn++;
             for (const int depth : {0, 2, 9}) {
                 if (!chosen(of++, 3)) continue;
-                const std::string rib = roomOf(shader, more);
-                const Traced one = trace(rib, false, 16, depth), all = trace(rib, true, 16, depth);
-                EXPECT_GT(sumOf(one), 1) << shader;
-                EXPECT_EQ(one.inRows, 0u);
-                if (std::string(shader) == "\"threshold\"" && depth > 0) EXPECT_GT(all.inRows, all.points / 2) << shader << depth;
-                EXPECT_EQ(differences(one, all), 0u) << shader << more << depth;
-                EXPECT_EQ(differences(one, trace(rib, true, 4, depth)), 0u) << shader << more << depth;
-                EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
+                const bool most = std::string(shader) == "\"threshold\"" && depth > 0;
+                expectSameBits(roomOf(shader, more), pathSettings(), most ? .5 : -1, shader + more, depth);
             }
         }
         ++turn;
@@ -111,17 +93,12 @@ TEST(Blocks, LetLightThroughAndTakeWhatNeedsALook) {
     writeGlossy();
     writeShader("tiny", R"(surface tiny() { Ci = diffuse(normal(1e-25 * normalize(N))); })");
     for (const char* shader : {"many", "tiny"}) {
-        const std::string rib = roomOf("\"" + std::string(shader) + "\"");
-        const Traced one = trace(rib, false), all = trace(rib, true);
-        EXPECT_GT(sumOf(one), 1) << shader;
-        EXPECT_EQ(differences(one, all), 0u) << shader;
+        const Traced all = expectSameBits(roomOf("\"" + std::string(shader) + "\""), pathSettings(), -1, shader);
         EXPECT_EQ(all.inRows < all.points, std::string(shader) == "tiny") << shader; // its normals are read one by one
     }
     for (const char* shader : {"\"matte\"", "\"facets\"", "\"glossy\""}) {
         const std::string rib = roomOf(shader, "Opacity .5 .6 .7\nAttribute \"trace\" \"bias\" .01\n");
-        const Traced all = trace(rib, true);
-        EXPECT_EQ(differences(trace(rib, false), all), 0u) << shader;
-        EXPECT_GT(all.inRows, all.points / 2) << shader;
+        expectSameBits(rib, pathSettings(), .5, shader);
     }
 }
 
@@ -141,7 +118,7 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
     ASSERT_EQ(d.all().size(), 0u);
     outputs.outputs = {{"soft"}, {"sheen"}};
     writeShader("bumpy", R"(displacement bumpy() { P += .03 * sin(20 * u) * normalize(N); N = calculatenormal(P); })");
-    const std::string bumpy = "ShadingRate 16\nAttribute \"displacementbound\" \"float sphere\" .1\nDisplacement \"bumpy\"\n";
+    const std::string bumpy = "ShadingRate 2500\nAttribute \"displacementbound\" \"float sphere\" .1\nDisplacement \"bumpy\"\n";
     const std::string inside = "Interior \"medium\" \"color scattering\" [0 0 0] \"color absorption\" [.2 .5 .3]\n";
     const std::string fog = "Atmosphere \"fog\" \"distance\" 9 \"background\" [.3 .2 .1]\n";
     size_t turn = 0; // not nightly: every setting and scene, and each of both with both shaders
@@ -151,12 +128,7 @@ TEST(Blocks, TellOfLightWhatOutputsAsk) {
             size_t of = turn++;
             for (const char* shader : {"\"apart\"", "\"facets\""}) {
                 if (!chosen(of++, 2) || (more == bumpy && !s.lightPaths)) continue; // to dice the room takes long
-                const std::string rib = roomOf(shader, more);
-                const Traced one = trace(rib, false, 16, -1, s), all = trace(rib, true, 16, -1, s);
-                EXPECT_GT(sumOf(one), 1) << shader << more;
-                EXPECT_EQ(differences(one, all), 0u) << shader << more;
-                EXPECT_EQ(differences(one, trace(rib, true, 4, -1, s)), 0u) << shader << more;
-                EXPECT_GT(all.inRows, s.outputs.empty() ? all.points / 4 : 0) << shader << more;
+                expectSameBits(roomOf(shader, more), s, s.outputs.empty() ? .25 : 0, shader + more);
             }
         }
         ++turn; // the number of scenes is even
@@ -194,14 +166,7 @@ TEST(Blocks, AreFollowedThroughFog) {
                 size_t l = 0;
                 for (const int depth : {1, -1}) {
                     if (!turn || !chosen(i / 2 + j + l++, 2)) continue;
-                    const std::string rib = roomOf(shader, more);
-                    const Traced one = trace(rib, false, 16, depth, s), all = trace(rib, true, 16, depth, s);
-                    EXPECT_GT(sumOf(one), 1) << shader << more;
-                    EXPECT_EQ(one.inRows, 0u);
-                    EXPECT_GT(all.inRows, all.points / (depth < 0 ? 4 : 8)) << shader << more; // at the end skies are looked for
-                    EXPECT_EQ(differences(one, all), 0u) << shader << more << depth;
-                    EXPECT_EQ(differences(one, trace(rib, true, 4, depth, s)), 0u) << shader << more << depth;
-                    EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
+                    expectSameBits(roomOf(shader, more), s, depth < 0 ? .25 : .125, shader + more, depth); // at the end: skies
                 }
             }
             ++j;
@@ -215,13 +180,8 @@ TEST(Blocks, EndPathsWhereTheyAreAsLongAsTheyMayBe) {
          {"\"matte\"", "\"plastic\"", "\"slmaterial\" \"color diffusecolor\" [0 0 0] \"color specularcolor\" [.9 1 1]"})
         for (const std::string more : {"", "Opacity .5 .6 .7\n", "LightSource \"envlight\" 9 \"intensity\" .3\n"})
             for (int depth = 0; depth < 4; ++depth) {
-                const std::string rib = roomOf(shader, more);
-                const Traced one = trace(rib, false, 16, depth), all = trace(rib, true, 16, depth);
-                EXPECT_GT(sumOf(one), 1) << shader << more << depth;
-                EXPECT_EQ(differences(one, all), 0u) << shader << more << depth;
-                EXPECT_EQ(one.cut, all.cut) << shader << more << depth;
+                const Traced all = expectSameBits(roomOf(shader, more), pathSettings(), .3, shader + more, depth);
                 EXPECT_GT(all.cut, 0u) << shader << more << depth;
-                EXPECT_GT(all.inRows, all.points / 3) << shader << more << depth; // shadow rays ask for opacity, too
             }
 }
 
@@ -245,11 +205,7 @@ TEST(Blocks, LookPicturesUpAndKnowHowLargePointsAre) {
                 "surface shiny() { normal n = faceforward(normalize(N), I); Ci = .2 * diffuse(n) + .1 * color environment(" +
                     map + ", reflect(I, n)) + .1 * color(E) * s; }");
     for (const char* shader : {"painted", "sized", "shiny"}) {
-        const std::string rib = roomOf("\"" + std::string(shader) + "\"");
-        const Traced one = trace(rib, false), all = trace(rib, true);
-        EXPECT_GT(sumOf(one), 1) << shader;
-        EXPECT_EQ(differences(one, all), 0u) << shader;
-        EXPECT_GT(all.inRows, all.points / 2) << shader;
+        expectSameBits(roomOf("\"" + std::string(shader) + "\""), pathSettings(), .5, shader);
     }
 }
 

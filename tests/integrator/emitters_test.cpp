@@ -68,6 +68,26 @@ TEST(Emitters, Textured) {
               underSquare([&](double u, double v) { return 1 + 19 * blend(u) * (1 - blend(v)); }), 1e-3, "map");
 }
 
+// A lamp that rays of a lobe do not see: light samples bring all of its light. Two lobes in halves, a diffuse and a specular one
+// of the same shape (facets of roughness 0 are Lambert's); a lamp of triangles and one that is none.
+TEST(Emitters, UnseenByRaysOfALobe) {
+    writeShader("halves",
+                "surface halves() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = .5 * diffuse(n) + .5 * trace(P, "
+                "n, \"distribution\", \"oren-nayar\", \"roughness\", 0, \"samplearealights\", 1, \"type\", "
+                "\"specular\"); }\n");
+    writeShader("both5", "light both5() { illuminate(P, N, PI) Cl = 5; }\n");
+    const std::string square = "Polygon \"P\" [-1 2 -1  1 2 -1  1 2 1  -1 2 1]\n",
+                      disk = "Translate 0 2 0\nRotate 90 1 0 0\nDisk 0 1 360\n";
+    const double ofSquare = underSquare([](double, double) { return 5.; }), ofDisk = 5 / (1 + 4.);
+    for (const char* unseen : {"", "\"int diffuse\" 0", "\"int specular\" 0", "\"int diffuse\" 0 \"int specular\" 0"})
+        for (const bool flat : {true, false}) {
+            const std::string hidden = *unseen ? std::string("Attribute \"visibility\" ") + unseen + "\n" : "";
+            Scene s(inWorld(lamp("\"both5\" 1", hidden + (flat ? square : disk)) + "Surface \"halves\"\n" + kFloor), of(0));
+            expectMean(s.estimate(kView, samples(10'000)), flat ? ofSquare : ofDisk, .01,
+                       unseen + std::string(flat ? " square" : " disk"));
+        }
+}
+
 // A ball of radius 1 that a displacement makes one of radius 1.5: L (R / d)^2. Light samples lie where rays meet it.
 TEST(Emitters, Displaced) {
     writeShader("swell", "displacement swell() { P += .5 * normalize(N); N = calculatenormal(P); }\n");

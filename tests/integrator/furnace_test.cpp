@@ -56,6 +56,19 @@ TEST(Furnace, RouletteAddsUpToTheSeries) {
                        std::string(geometry) + num(a));
         }
 }
+// A light that traces makes each vertex send rays, so the throughput itself ends paths there; black, it adds nothing.
+TEST(Furnace, RouletteBesideALightThatTraces) {
+    writeFurnace();
+    writeShader("seesnothing",
+                "light seesnothing(float part = 0) { illuminate(point \"shader\" (0, 0, .2)) Cl = part * trace(Ps, "
+                "vector \"shader\" (0, 1, .3)); }\n");
+    Settings s;
+    s.hider = Hider::Path;
+    s.maxDepth = 2000;
+    std::string rib = furnace(kSphere, .6);
+    rib.insert(rib.find("Surface"), "LightSource \"seesnothing\" 1\n");
+    expectMean(Scene(rib, s).estimate(kInside, samples(8000)), 1 / (1 - .6), .01, "a light that traces");
+}
 // The walls as area lights: light samples, weights and lobe rays together.
 TEST(Furnace, WallsAsLights) {
     for (double a : {.5, .8})

@@ -63,6 +63,14 @@ TEST(LastSkies, AmbientLightAndTrace) {
     EXPECT_NEAR(Scene(inWorld(sky + "Surface \"lasttrace\" \"float lights\" 1\n" + kFloor), depth(0)).estimate(kView, 200).mean(),
                 2, 1e-4);
     EXPECT_EQ(Scene(inWorld(sky + "Surface \"lasttrace\"\n" + kFloor), depth(0)).estimate(kView, 200).mean(), 0);
+    // A sky that only loops over lights see is none for rays of trace(), at any depth.
+    const std::string loops = "Attribute \"light\" \"string samplingstrategy\" \"illuminance\"\n";
+    for (const int most : {0, 1})
+        EXPECT_EQ(Scene(inWorld(loops + sky + "Surface \"lasttrace\" \"float lights\" 1\n" + kFloor), depth(most))
+                      .estimate(kView, 200)
+                      .mean(),
+                  0)
+            << most;
     // A sky that is off brings nothing.
     EXPECT_EQ(Scene(inWorld(sky + "Illuminate 1 0\n" + kLambert + kFloor), depth(0)).estimate(kView, 200).mean(), 0);
 }

@@ -154,6 +154,27 @@ TEST(Medium, PointsNearALampAreWorthTheirWhile) {
     EXPECT_LT(m[0].se(), .3 * m[1].se());
 }
 
+// The lamp in thirty-two parts, of which chance chooses some: what is scattered once by quadrature. Cl is irradiance over pi.
+TEST(Medium, PointsNearALampOfManyParts) {
+    const double sigma = .3, high = .05, deep = .2;
+    double want = 0;
+    constexpr int n = 20000;
+    for (int i = 0; i < n; ++i) {
+        const double z = 2 * (i + .5) / n - 1, d2 = high * high + (z - deep) * (z - deep);
+        want += sigma * std::exp(-sigma * (z + 1 + std::sqrt(d2))) / 4 / d2 * 2 / n;
+    }
+    for (const int parts : {1, 32}) {
+        std::string lamps;
+        for (int i = 1; i <= parts; ++i)
+            lamps += "LightSource \"pointlight\" " + std::to_string(i) + " \"from\" [0 .05 .2] \"intensity\" " +
+                     std::to_string(1. / parts) + "\n";
+        Settings set = withShaders(Hider::Path);
+        set.indirect = false;
+        Scene s(at5(lamps + inside("\"color scattering\" [.3 .3 .3]")), set);
+        expectMean(s.estimate(along(), samples(20000)), want, .02, std::to_string(parts) + " parts");
+    }
+}
+
 // What is scattered twice and more about a lamp: rays that pass the lamp bring the more the nearer they come, so by the phase
 // function alone a few samples bring most of it.
 TEST(Medium, RaysThatPassALampBringNoOutliers) {

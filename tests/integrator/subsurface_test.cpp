@@ -124,6 +124,21 @@ TEST_F(Subsurface, AFurnaceGivesWhatComesIn) {
         }
 }
 
+// Of walls that are no lights comes light of surfaces, of which the energy rule lets a surface give back no more than it
+// receives.
+TEST_F(Subsurface, AFurnaceOfWallsGivesNoMoreThanComesIn) {
+    writeShader("skintwice", "surface skintwice() { Oi = 1; Ci = 2 * subsurface(P, normalize(N), \"scattering\", color(3, 2, 5), "
+                             "\"absorption\", color 0, \"ior\", 1); }\n");
+    Scene s(
+        inWorld(
+            "AttributeBegin Attribute \"visibility\" \"int diffuse\" 1 \"int specular\" 1 Surface \"constant\" Color .5 .5 .5 "
+            "Sphere 50 -50 50 360 AttributeEnd\nTranslate 0 0 5 Surface \"skintwice\" Sphere 1 -1 1 360\n"),
+        withShaders(Hider::Path));
+    const Moments m = s.estimate(rayTo({.7f, .1f, 0}, {.7f, .1f, 5}), samples(20000));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(m.mean(k), .5, kZ * m.se(k) + 1e-4) << k;
+    EXPECT_LT(m.se(), .01);
+}
+
 TEST_F(Subsurface, AHalfSpaceReflectsAsTheClosedFormHasIt) {
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})
         for (const char* ior : {"1", "1.375"}) {

@@ -136,4 +136,28 @@ TEST(TwoLobes, APanelCutIntoThirtyTwoLights) {
     }
 }
 
+// A panel of side 8 so close above the floor that each of its thirty-two lights is as wide as a lobe: for light samples and rays
+// to have their weights, both must know the chance of the light and that of the lobe. Two lobes of one shape in halves (facets of
+// roughness 0 are Lambert's).
+TEST(TwoLobes, UnderAWidePanelOfThirtyTwoLights) {
+    writeTwo();
+    writeShader("halves",
+                "surface halves() { vector up = vector(0, 1, 0); Oi = 1; Ci = .5 * diffuse(normal(up)) + .5 * trace(P, up, "
+                "\"distribution\", \"oren-nayar\", \"roughness\", 0, \"samplearealights\", 1); }\n");
+    const double a = 4 / .5, r = std::sqrt(1 + a * a), want = 2 * 4 * (2 * a / r * std::atan(a / r)) / (2 * kPi); // radiance 2
+    std::string panel;
+    for (int i = 0; i < 32; ++i) {
+        const int x = -4 + i % 8, z = -4 + i / 8 * 2;
+        char t[400];
+        std::snprintf(t, sizeof t,
+                      "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nAreaLightSource \"radiant\" %d \"radiance\" 2\n"
+                      "Surface \"constant\"\nColor 0 0 0\nPolygon \"P\" [%d .5 %d  %d .5 %d  %d .5 %d  %d .5 %d]\nAttributeEnd\n"
+                      "Illuminate %d 1\n",
+                      i + 1, x, z, x + 1, z, x + 1, z + 2, x, z + 2, i + 1);
+        panel += t;
+    }
+    Scene s(inWorld(panel + "Surface \"halves\"\n" + kFloor), mode(0, false));
+    expectMean(s.estimate(rayTo({.2f, .3f, -.1f}, {0, 0, 0}), samples(40000)), want, .003, "wide panel");
+}
+
 } // namespace twolobes_test

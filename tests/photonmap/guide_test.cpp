@@ -231,12 +231,14 @@ TEST(CausticGuide, LessNoise) {
 
 // A lamp that shines down on a mirror, and is not there from above. A ceiling over it is lit by the lamp's image alone: a disk of
 // radiance L and radius R whose image is H below gives E / pi = L R^2 / (R^2 + H^2) (Siegel and Howell, configuration C-21).
+const std::string kLampDown =
+    "AttributeBegin Sides 1 AreaLightSource \"slrect\" 1 \"float intensity\" 5 Surface \"constant\" Color "
+    "0 0 0 Translate 0 1 0 Rotate 90 1 0 0 Disk 0 .1 360 AttributeEnd\nIlluminate 1 1\n";
+constexpr double kImage = 5 * .1 * .1 / (.1 * .1 + 3 * 3);
+
 TEST(CausticGuide, ImageOfALampInAMirror) {
-    const std::string disk =
-        "AttributeBegin Sides 1 AreaLightSource \"slrect\" 1 \"float intensity\" 5 Surface \"constant\" Color "
-        "0 0 0 Translate 0 1 0 Rotate 90 1 0 0 Disk 0 .1 360 AttributeEnd\nIlluminate 1 1\n";
     for (const bool exact : {true, false}) {
-        Scene s(inWorld(disk + "AttributeBegin " + kMirror + kMirrorBelow +
+        Scene s(inWorld(kLampDown + "AttributeBegin " + kMirror + kMirrorBelow +
                         "AttributeEnd\nSurface \"matte\" \"float Ka\" 0 \"float "
                         "Kd\" 1 Color .5 .5 .5 " +
                         kCeiling),
@@ -247,9 +249,48 @@ TEST(CausticGuide, ImageOfALampInAMirror) {
                 }());
         if (exact) guide(s, .01f);
         else guideWrongly(s, {-2, 1.9f, -2}, {2, 2.1f, 2});
-        const double want = .5 * 5 * .1 * .1 / (.1 * .1 + 3 * 3);
-        expectMean(s.estimate(rayTo({.02f, 1.2f, 0}, {0, 2, 0}), samples(exact ? 40000 : 400000)), want, exact ? .02 : .06,
+        expectMean(s.estimate(rayTo({.02f, 1.2f, 0}, {0, 2, 0}), samples(exact ? 40000 : 400000)), .5 * kImage, exact ? .02 : .06,
                    exact ? "learned" : "wrong");
+    }
+}
+
+// A ceiling that would give back twice what it receives gives back all of it.
+TEST(CausticGuide, ImageUnderTheEnergyRule) {
+    writeShader("much", "surface much() { Oi = 1; Ci = 2 * diffuse(faceforward(normalize(N), I)); }\n");
+    Settings shallow = path();
+    shallow.maxDepth = 2;
+    Scene s(inWorld(kLampDown + "AttributeBegin " + kMirror + kMirrorBelow + "AttributeEnd\nSurface \"much\" " + kCeiling),
+            shallow);
+    guide(s, .01f);
+    expectMean(s.estimate(rayTo({.02f, 1.2f, 0}, {0, 2, 0}), samples(40000)), kImage, .02, "much");
+}
+
+// A wide lamp, whose image rays of lobes find as well as the guide does, so that the weights of both count: at two lobes, of
+// which each has its part, and behind three sheets that pass .6 each.
+TEST(CausticGuide, ImageOfAWideLamp) {
+    const std::string begin = "() { normal n = faceforward(normalize(N), I); Oi = 1; Ci = ";
+    writeShader("beside", "surface beside" + begin +
+                              ".5 * diffuse(n) + .5 * trace(P, n, \"distribution\", \"oren-nayar\", \"roughness\", 0, "
+                              "\"samplearealights\", 1); }\n");
+    writeShader("passes", "surface passes() { Oi = 1; Ci = .6 * trace(P, normalize(I)); }\n");
+    const std::string wide =
+                          "AttributeBegin Sides 1 AreaLightSource \"slrect\" 1 \"float intensity\" 5 Surface \"constant\" Color "
+                          "0 0 0 Translate 0 1 0 Rotate 90 1 0 0 Disk 0 2 360 AttributeEnd\nIlluminate 1 1\n",
+                      mirror = "AttributeBegin " + kMirror + kMirrorBelow + "AttributeEnd\nSurface \"beside\" " + kCeiling;
+    std::string sheets = "AttributeBegin Surface \"passes\"\n";
+    for (const char* x : {"1.2", "1", ".8"})
+        sheets += std::string("Polygon \"P\" [") + x + " 1.3 -.1  " + x + " 1.3 .1  " + x + " 1.8 .1  " + x + " 1.8 -.1]\n";
+    const double image = 5 * 2 * 2 / (2 * 2 + 3 * 3.);
+    for (const bool behind : {false, true}) {
+        Settings set = path();
+        set.maxDepth = behind ? 5 : 2; // the image, and nothing that the ceiling sends on
+        Scene s(inWorld(wide + (behind ? sheets + "AttributeEnd\n" : "") + mirror), set);
+        guideWrongly(s, {-2, 1.9f, -2}, {2, 2.1f, 2});
+        Counters n;
+        const CameraRay ray = behind ? rayTo({1.6f, 1.2f, 0}, {0, 2, 0}) : rayTo({.02f, 1.2f, 0}, {0, 2, 0});
+        expectMean(s.estimate(ray, samples(40000), &n), (behind ? .216 : 1) * image, behind ? .012 : .01,
+                   behind ? "behind sheets" : "two lobes");
+        EXPECT_GT(n.guided, 500u);
     }
 }
 
@@ -258,7 +299,8 @@ TEST(CausticGuide, BlocksHaveTheBitsOfSinglePoints) {
         std::vector<std::vector<SampleResult>> all;
         for (const bool blocks : {true, false}) {
             Scene s(inWorld(c.scene), path(blocks));
-            guide(s, .3f, nightly() ? 40000 : 10000);
+            if (nightly()) guide(s, .3f);
+            else guideWrongly(s, {-2, -.1f, -2}, {2, 2.1f, 2}); // bits do not depend on what a guide knows
             std::vector<CameraRay> rays;
             for (int i = 0; i < (nightly() ? 1500 : 600); ++i) {
                 CameraRay r = c.ray;

@@ -171,32 +171,27 @@ TEST(LightGuide, PathsHaveTheSameLight) {
     const CameraRay ray = rayTo({-1, 1.5f, 0}, {1.2f, 0, .4f});
     for (const auto& [name, light] :
          {std::pair<std::string, std::string>("sky", kSky), {"lamp", kLamp}, {"sky with a table", sideSky()}}) {
-        for (const bool blocks : {true, false}) {
-            Scene s(inWorld(room(light)), path(blocks));
-            EXPECT_EQ(static_cast<const WorldImpl&>(*s.world).lights_[0].sky != nullptr, name == "sky with a table");
-            const int n = samples(60000);
-            const Moments plain = s.estimate(ray, n);
-            const LightGuideFigures f = blocks ? learn(s, 80000) : LightGuideFigures{};
-            if (blocks) EXPECT_GT(f.used, 0u) << name;
-            const Moments guided = s.estimate(ray, n);
-            const double se = std::hypot(plain.se(), guided.se());
-            EXPECT_NEAR(plain.mean(), guided.mean(), kZ * se) << name;
-            if (blocks && name != "sky with a table") EXPECT_LT(guided.se(), .75 * plain.se()) << name;
-            EXPECT_LT(se, .06 * plain.mean()) << name << ": not precise enough to decide";
-            guideWrongly(s);
-            const Moments wrong = s.estimate(ray, n);
-            EXPECT_NEAR(plain.mean(), wrong.mean(), kZ * std::hypot(plain.se(), wrong.se())) << name << ", a guide that is wrong";
-        }
+        Scene s(inWorld(room(light)), path(true));
+        EXPECT_EQ(static_cast<const WorldImpl&>(*s.world).lights_[0].sky != nullptr, name == "sky with a table");
+        const int n = samples(60000);
+        const Moments plain = s.estimate(ray, n);
+        EXPECT_GT(learn(s, 80000).used, 0u) << name;
+        const Moments guided = s.estimate(ray, n);
+        const double se = std::hypot(plain.se(), guided.se());
+        EXPECT_NEAR(plain.mean(), guided.mean(), kZ * se) << name;
+        if (name != "sky with a table") EXPECT_LT(guided.se(), .75 * plain.se()) << name;
+        EXPECT_LT(se, .06 * plain.mean()) << name << ": not precise enough to decide";
+        guideWrongly(s);
+        const Moments wrong = s.estimate(ray, n);
+        EXPECT_NEAR(plain.mean(), wrong.mean(), kZ * std::hypot(plain.se(), wrong.se())) << name << ", a guide that is wrong";
     }
 }
 
 // A floor of reflectance .6 under a uniform sky of radiance 5 has radiance 3; the guide knows a part of that sky only.
 TEST(LightGuide, FloorUnderASky) {
-    for (const bool blocks : {true, false}) {
-        Scene s(inWorld(kSky + "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1 Color .6 .6 .6\n" + kFloor), path(blocks));
-        guideWrongly(s);
-        expectMean(s.estimate(kView, samples(40000)), 3, .01, blocks ? "in blocks" : "by points");
-    }
+    Scene s(inWorld(kSky + "Surface \"matte\" \"float Ka\" 0 \"float Kd\" 1 Color .6 .6 .6\n" + kFloor), path(true));
+    guideWrongly(s);
+    expectMean(s.estimate(kView, samples(40000)), 3, .01, "floor");
 }
 
 // Exits of subsurface walks gather light as other points do, so a guide must not take light from their rays.

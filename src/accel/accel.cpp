@@ -157,7 +157,7 @@ bool Accel::keeps(uint32_t shape, const Vec3& point, const Vec3& normal, float t
     r.dir = normal;
     r.time = time;
     std::unique_ptr<Solids::Crossings> crossings;
-    return impl_->solids->keeps(r, shape, 1, crossings);
+    return impl_->solids->keeps(r, shape, 1, crossings, nullptr);
 }
 
 const std::vector<ShapeRef>& Accel::shapes() const { return impl_->shapes; }

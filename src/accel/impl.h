@@ -26,6 +26,7 @@ struct Query {
     Best best;
     bool any;                                       // occlusion
     std::unique_ptr<Solids::Crossings> crossings{}; ///< of parts of solids; null: none was needed
+    const StopFlag* stop = nullptr;
 };
 
 inline bool before(double t, uint32_t shape, uint32_t prim, const Best& b) {
@@ -136,7 +137,7 @@ struct Accel::Impl {
         if (!q.any && !before(t, s, prim, q.best)) return false;
         if (!trimmed.empty() && trimmed[s] && !trimmed[s]->keepsHit(prim, b1, b2)) return false;
         if (shapes[s]->oneSided() && r.sides != Sides::Both && (away() >= 0) != (r.sides == Sides::Back)) return false;
-        if (ofSolid(s) && !solids->keeps(r, s, t, q.crossings)) return false;
+        if (ofSolid(s) && !solids->keeps(r, s, t, q.crossings, q.stop)) return false;
         q.best = {t, s, prim, b1, b2};
         return true;
     }

@@ -53,7 +53,7 @@ std::unique_ptr<Solids> Solids::of(const std::vector<geometry::ShapeRef>& shapes
     return all;
 }
 
-std::vector<float> Solids::crossingsOf(const Part& p, const Ray& of) {
+std::vector<float> Solids::crossingsOf(const Part& p, const Ray& of, const StopFlag* stop) {
     constexpr size_t kMost = 10'000; // what lies behind so many surfaces of one part is not looked at
     Ray r = of;
     r.tnear = 0;
@@ -65,7 +65,7 @@ std::vector<float> Solids::crossingsOf(const Part& p, const Ray& of) {
     r.only = nullptr;
     std::vector<float> all;
     Hit h;
-    while (all.size() < kMost && p.surface->intersect(r, h)) {
+    while (all.size() < kMost && !(stop && *stop) && p.surface->intersect(r, h)) {
         all.push_back(h.distance);
         r.excludeShape = h.shape;
         r.excludePrim = h.prim;
@@ -101,7 +101,7 @@ template <class At> Solids::Sides Solids::resolve(uint32_t node, const At& at) c
     return all;
 }
 
-bool Solids::keeps(const Ray& r, uint32_t shape, double t, std::unique_ptr<Crossings>& found) const {
+bool Solids::keeps(const Ray& r, uint32_t shape, double t, std::unique_ptr<Crossings>& found, const StopFlag* stop) const {
     const uint32_t own = partOf_[shape];
     const Whole& whole = wholes_[wholeOf_[own]];
     // Distance between float coordinates that represent the same position.
@@ -120,7 +120,7 @@ bool Solids::keeps(const Ray& r, uint32_t shape, double t, std::unique_ptr<Cross
         if (m < 0) {
             if (!found) found = std::make_unique<Crossings>();
             const auto [crossings, fresh] = found->try_emplace(part);
-            if (fresh) crossings->second = crossingsOf(parts_[part], r);
+            if (fresh) crossings->second = crossingsOf(parts_[part], r, stop);
             const Sides s = sidesAt(crossings->second, t, near);
             m = int8_t(s.before | s.behind << 1);
         }

@@ -19,8 +19,9 @@ public:
     /// Where one ray crosses the surfaces of parts: by part, distances in ascending order. Found once for all hits of the ray, so
     /// that a ray through n surfaces costs n searches for each part and not n^2.
     using Crossings = std::map<uint32_t, std::vector<float>>;
-    /// Whether the solid starts or ends where the ray crosses the shape's surface. found: of this ray; null at first.
-    bool keeps(const Ray&, uint32_t shape, double t, std::unique_ptr<Crossings>& found) const;
+    /// Whether the solid starts or ends where the ray crosses the shape's surface. found: of this ray; null at first. stop: once
+    /// it is set, the result is undefined; may be null.
+    bool keeps(const Ray&, uint32_t shape, double t, std::unique_ptr<Crossings>& found, const StopFlag* stop) const;
 
 private:
     struct Part {
@@ -41,7 +42,7 @@ private:
     struct Sides {
         bool before, behind;
     };
-    static std::vector<float> crossingsOf(const Part&, const Ray&);
+    static std::vector<float> crossingsOf(const Part&, const Ray&, const StopFlag* stop);
     static Sides sidesAt(const std::vector<float>& crossings, double t, double near);
     template <class At> Sides resolve(uint32_t node, const At& at) const;
     std::vector<Part> parts_;

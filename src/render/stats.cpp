@@ -1,5 +1,5 @@
 #include "render/stats.h"
-#include "integrator/samples.h"
+#include "integrator/integrator.h"
 #include "render/progress.h"
 #include <cmath>
 #include <fmt/format.h>

@@ -35,6 +35,24 @@ const std::string kPng = "\x89PNG", kJpeg = "\xff\xd8\xff", kExr = "\x76\x2f\x31
 
 } // namespace
 
+// A ball encloses its medium; a cylinder without lids does not.
+TEST_F(Said, OpenMedia) {
+    const auto fog = [&](const std::string& shape) {
+        scene(
+            "Hider \"path\"\nPixelSamples 4 4\n",
+            "LightSource \"envlight\" 1\nAttributeBegin Surface \"null\" Interior \"medium\" \"color scattering\" [.5 .5 .5]\n" +
+                shape + "\nAttributeEnd\nTranslate 5 0 0\n");
+        run("render a.rib -o a.exr");
+        EXPECT_EQ(status, 0);
+    };
+    fog("Sphere 1.5 -1.5 1.5 360");
+    EXPECT_FALSE(says("does not enclose it")) << errors();
+    fog("Rotate 90 1 0 0 Cylinder 1.5 -1 1 360");
+    EXPECT_TRUE(says("does not enclose it")) << errors();
+    EXPECT_TRUE(says("a.rib:")) << errors();
+    EXPECT_EQ(times("rays in the medium"), 1) << errors();
+}
+
 TEST_F(Said, ExtensionsThatNobodyWrites) {
     scene("", "Surface \"constant\"\n");
     for (const char* name : {"a.gif", "a", "a.pic", "a.exr.bak"}) {

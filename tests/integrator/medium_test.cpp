@@ -336,17 +336,22 @@ TEST(Medium, ShadowsAreDimmed) {
     }
 }
 
-TEST(Medium, WhatHasNoEndIsSaidAndEnds) {
+TEST(Medium, WhatHasNoEndIsCountedAndEnds) {
     // A sheet whose inside is half of space.
     Scene s(at5("LightSource \"envlight\" 1\nReverseOrientation " +
                 inside("\"color scattering\" [1 1 1]", "Polygon \"P\" [-9 -9 0  -9 9 0  9 9 0  9 -9 0]\n") +
                 "ReverseOrientation " +
                 inside("\"color scattering\" [1 1 1]", "Polygon \"P\" [-9 -9 1  -9 9 1  9 9 1  9 -9 1]\n")),
             withShaders(Hider::Path));
-    const Moments m = s.estimate(along(), 2000);
+    Counters counters;
+    const Moments m = s.estimate(along(), 2000, &counters);
     EXPECT_TRUE(std::isfinite(m.mean()));
-    EXPECT_NE(s.messages().find("does not enclose it"), std::string::npos) << s.messages();
-    EXPECT_NE(s.messages().find("test.rib"), std::string::npos) << s.messages();
+    uint64_t lost = 0;
+    for (const MediumSegments& medium : counters.media) {
+        EXPECT_LE(medium.lost, medium.all);
+        lost += medium.lost;
+    }
+    EXPECT_GT(lost, 100u); // the renderer reports them: cli/Said.OpenMedia
 }
 
 TEST(Medium, WhatIsNoNumberOrNotTheSameEverywhereIsSaid) {

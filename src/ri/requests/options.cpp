@@ -198,7 +198,6 @@ void option(Interpreter& in, const Call& c) {
     const std::string& category = c.text(0);
     for (scene::Param& p : in.bind(c, Use::Option, category)) {
         std::string key = category + ":" + p.name;
-        if (key == "rib:varsubst") key = "ribparse:varsubst"; // ricpp's name for it
         if (category == "searchpath" && !p.strings.empty()) { // "&" stands for the value so far
             std::string before, now;
             if (auto i = in.options.values.find(key); i != in.options.values.end() && !i->second.strings.empty())
@@ -218,7 +217,8 @@ void option(Interpreter& in, const Call& c) {
             }
             p.strings[0] = now;
         }
-        if (key == "ribparse:varsubst" && !p.strings.empty()) in.lookForVariables();
+        if (key == "rib:varsubst") in.options.values["ribparse:varsubst"] = p; // ricpp's name for it
+        if ((key == "ribparse:varsubst" || key == "rib:varsubst") && !p.strings.empty()) in.lookForVariables();
         in.options.values[key] = std::move(p);
     }
 }

@@ -156,8 +156,7 @@ bool Accel::keeps(uint32_t shape, const Vec3& point, const Vec3& normal, float t
     r.org = point - normal; // along the normal: a grazing ray would miss a rounded point
     r.dir = normal;
     r.time = time;
-    std::unique_ptr<Solids::Crossings> crossings;
-    return impl_->solids->keeps(r, shape, 1, crossings, nullptr);
+    return impl_->solids->keeps(r, shape, 1, nullptr);
 }
 
 const std::vector<ShapeRef>& Accel::shapes() const { return impl_->shapes; }

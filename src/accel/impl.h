@@ -24,9 +24,8 @@ struct Best {
 struct Query {
     const Ray* ray;
     Best best;
-    bool any;                                       // occlusion
-    std::unique_ptr<Solids::Crossings> crossings{}; ///< of parts of solids; null: none was needed
-    const StopFlag* stop = nullptr;
+    bool any;                       // occlusion
+    const StopFlag* stop = nullptr; ///< ends long searches in solids; may be null
 };
 
 inline bool before(double t, uint32_t shape, uint32_t prim, const Best& b) {
@@ -137,7 +136,7 @@ struct Accel::Impl {
         if (!q.any && !before(t, s, prim, q.best)) return false;
         if (!trimmed.empty() && trimmed[s] && !trimmed[s]->keepsHit(prim, b1, b2)) return false;
         if (shapes[s]->oneSided() && r.sides != Sides::Both && (away() >= 0) != (r.sides == Sides::Back)) return false;
-        if (ofSolid(s) && !solids->keeps(r, s, t, q.crossings, q.stop)) return false;
+        if (ofSolid(s) && !solids->keeps(r, s, t, q.stop)) return false;
         q.best = {t, s, prim, b1, b2};
         return true;
     }

@@ -53,32 +53,25 @@ std::unique_ptr<Solids> Solids::of(const std::vector<geometry::ShapeRef>& shapes
     return all;
 }
 
-std::vector<float> Solids::crossingsOf(const Part& p, const Ray& of, const StopFlag* stop) {
-    constexpr size_t kMost = 10'000; // what lies behind so many surfaces of one part is not looked at
+Solids::Sides Solids::sidesOf(const Part& p, const Ray& of, double t, double near, const StopFlag* stop) const {
+    constexpr int kMost = 100'000; // crossings
     Ray r = of;
-    r.tnear = 0;
+    r.tnear = std::max(0.f, std::nextafter(float(t - 2 * near), 0.f));
     r.tfar = 1e38f;
     r.mask = kAll;
     r.excludeShape = r.excludePrim = kNone;
     r.passed = -1;
     r.sides = accel::Sides::Both;
     r.only = nullptr;
-    std::vector<float> all;
+    bool behind = false, here = false;
     Hit h;
-    while (all.size() < kMost && !(stop && *stop) && p.surface->intersect(r, h)) {
-        all.push_back(h.distance);
+    for (int i = 0; i < kMost && !(stop && *stop) && p.surface->intersect(r, h); ++i) {
+        if (h.distance > t + near) behind = !behind;
+        else if (h.distance >= t - near) here = !here;
         r.excludeShape = h.shape;
         r.excludePrim = h.prim;
         r.passed = h.distance;
     }
-    return all;
-}
-
-Solids::Sides Solids::sidesAt(const std::vector<float>& crossings, double t, double near) {
-    const auto first =
-        std::lower_bound(crossings.begin(), crossings.end(), t - near, [](float a, double b) { return double(a) < b; });
-    const auto last = std::upper_bound(first, crossings.end(), t + near, [](double a, float b) { return a < double(b); });
-    const bool here = (last - first) % 2 != 0, behind = (crossings.end() - last) % 2 != 0;
     return {behind != here, behind};
 }
 
@@ -101,7 +94,7 @@ template <class At> Solids::Sides Solids::resolve(uint32_t node, const At& at) c
     return all;
 }
 
-bool Solids::keeps(const Ray& r, uint32_t shape, double t, std::unique_ptr<Crossings>& found, const StopFlag* stop) const {
+bool Solids::keeps(const Ray& r, uint32_t shape, double t, const StopFlag* stop) const {
     const uint32_t own = partOf_[shape];
     const Whole& whole = wholes_[wholeOf_[own]];
     // Distance between float coordinates that represent the same position.
@@ -118,10 +111,7 @@ bool Solids::keeps(const Ray& r, uint32_t shape, double t, std::unique_ptr<Cross
     const auto at = [&](uint32_t part) {
         int8_t& m = memo[place(part)];
         if (m < 0) {
-            if (!found) found = std::make_unique<Crossings>();
-            const auto [crossings, fresh] = found->try_emplace(part);
-            if (fresh) crossings->second = crossingsOf(parts_[part], r, stop);
-            const Sides s = sidesAt(crossings->second, t, near);
+            const Sides s = sidesOf(parts_[part], r, t, near, stop);
             m = int8_t(s.before | s.behind << 1);
         }
         return Sides{(m & 1) != 0, (m & 2) != 0};

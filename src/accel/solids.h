@@ -5,7 +5,6 @@
 // as one, which belongs to the first part, so that parts may share a face.
 #pragma once
 #include "accel/accel.h"
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -16,12 +15,9 @@ public:
     /// Null if no shape belongs to a solid with more than one part.
     static std::unique_ptr<Solids> of(const std::vector<geometry::ShapeRef>&, Diagnostics&);
     bool in(uint32_t shape) const { return partOf_[shape] != kNone; }
-    /// Where one ray crosses the surfaces of parts: by part, distances in ascending order. Found once for all hits of the ray, so
-    /// that a ray through n surfaces costs n searches for each part and not n^2.
-    using Crossings = std::map<uint32_t, std::vector<float>>;
-    /// Whether the solid starts or ends where the ray crosses the shape's surface. found: of this ray; null at first. stop: once
-    /// it is set, the result is undefined; may be null.
-    bool keeps(const Ray&, uint32_t shape, double t, std::unique_ptr<Crossings>& found, const StopFlag* stop) const;
+    /// Whether the solid starts or ends where the ray crosses the shape's surface. stop: once it is set, the result is undefined;
+    /// may be null. A ray through very many surfaces takes long.
+    bool keeps(const Ray&, uint32_t shape, double t, const StopFlag* stop) const;
 
 private:
     struct Part {
@@ -42,8 +38,7 @@ private:
     struct Sides {
         bool before, behind;
     };
-    static std::vector<float> crossingsOf(const Part&, const Ray&, const StopFlag* stop);
-    static Sides sidesAt(const std::vector<float>& crossings, double t, double near);
+    Sides sidesOf(const Part&, const Ray&, double t, double near, const StopFlag* stop) const;
     template <class At> Sides resolve(uint32_t node, const At& at) const;
     std::vector<Part> parts_;
     std::vector<Node> nodes_;

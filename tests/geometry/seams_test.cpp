@@ -368,7 +368,8 @@ TEST(Dicing, FacetsAreMicropolygonsAtAnyDistance) {
         std::vector<float> P{-200, 0, -20, 200, 0, -20, -200, 0, 400, 200, 0, 400};
         if (!patches) P = {-200, 0, -20, 200, 0, -20, 200, 0, 400, -200, 0, 400};
         Scene s({patches ? patch("bilinear", P) : polygon(P)}, translateMatrix(0, -0.4, 0), 60);
-        EXPECT_EQ(s.diag.all().size(), 0u);
+        for (const Diagnostic& d : s.diag.all()) // a slow machine, or a sanitizer, takes more than a second
+            EXPECT_NE(d.message.find("dicing it took"), std::string::npos) << d.message;
         const TriMesh& m = s.shapes[0]->mesh();
         size_t tooLong = 0;
         for (uint32_t t = 0; t < m.triangles(); ++t)

@@ -110,7 +110,7 @@ std::vector<accel::Ray> recordRays(const Box& box, const accel::Accel& accel, in
             accel::Ray r;
             r.org = c.origin;
             r.dir = c.direction;
-            render::Sampler numbers(0, x, y);
+            Sampler numbers(0, x, y);
             bool inside = true;
             for (int b = 0; b < bounces && inside; ++b) {
                 accel::Hit h;

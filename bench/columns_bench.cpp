@@ -24,7 +24,7 @@ void printPicture(const Wave& wave, double samples) {
     uint64_t hash = 0;
     for (size_t i = 0; i < wave.film.size(); ++i) {
         if (i % 4 < 3) mean += fromFixed<40>(wave.film[i]);
-        hash = render::mix64(hash ^ uint64_t(wave.film[i]));
+        hash = mix64(hash ^ uint64_t(wave.film[i]));
     }
     std::printf("mean %.5f, hash %016llx\n", mean / 3 / samples, static_cast<unsigned long long>(hash));
 }

@@ -5,7 +5,7 @@
 
 namespace alpenglow::bench::columns {
 
-using render::Scrambles, render::reverseBits, render::streamWords;
+using Scrambles, reverseBits, streamWords;
 
 static void drawPairs(const Cols& p, int n, uint32_t stream, float* x, float* y) {
     for (int k = 0; k < n; k += W) {

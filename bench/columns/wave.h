@@ -6,7 +6,7 @@
 
 namespace alpenglow::bench::columns {
 
-using render::mix64;
+using mix64;
 
 struct Wave {
     int slice, chunk, call, w, h, spp;

@@ -47,7 +47,7 @@ int main() {
             uint64_t h = 0, v = 0;
             for (size_t k = 0; k + 8 <= n; k += 8) {
                 std::memcpy(&v, s.data() + k, 8);
-                h = alpenglow::render::mix64(h ^ v);
+                h = alpenglow::mix64(h ^ v);
             }
             return h;
         });

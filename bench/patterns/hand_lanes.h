@@ -7,7 +7,7 @@
 #define AL_INLINE static inline __attribute__((always_inline))
 #define AL_MEMBER __attribute__((always_inline)) inline
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 #if HAND_LANES == 1
 typedef float vf;
@@ -46,6 +46,6 @@ AL_INLINE vf unitReal(vu h) { return toReal(__builtin_bit_cast(vi, h >> 8)) * 0x
 AL_INLINE vf signedSlope(vu h) { return fromBits((h & 0x807fffffu) | 0x3f000000u); }
 AL_INLINE vu payload(vf x) { return bitsOf(x); }
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #include "shadeops/elementary.h"

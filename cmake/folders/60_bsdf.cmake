@@ -1,4 +1,5 @@
 folder_library(bsdf DEPS shadeops base)
+folder_tests(bsdf DEPS bsdf)
 # The stages in lanes, once for each width and the processors that have it; bsdf/lobelanes.cpp chooses. Nothing in them is
 # vectorised beyond what the source says.
 foreach(way "1 v2" "1 v3" "4 v2" "8 v3" "16 v4")

@@ -22,7 +22,7 @@ namespace {
 constexpr int kWhy = 512;                   ///< bytes of what a child has to say
 constexpr int kReported = 1, kNoModule = 2; ///< exit codes of the child: it wrote the reason; the module cannot be loaded
 
-/// Lets this process take so much memory beside what it has; what asks for more is told that there is none. Not under
+/// Lets this process take so much memory in addition to what it has; allocations beyond that fail. Not under
 /// AddressSanitizer, whose own tables are larger than any limit.
 void limitMemory([[maybe_unused]] uint64_t bytes) {
 #if !__has_feature(address_sanitizer)

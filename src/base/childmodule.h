@@ -32,7 +32,7 @@ struct ChildResult {
 using ChildWork = std::function<int(void* function, int to, char* why, int whySize)>;
 
 /// Loads the module `file` in a child process and runs `work` on its function `name`. `memory`: bytes that the child may take
-/// beside what this process has; seconds: limits::kProgramSeconds.
+/// in addition to what this process has; seconds: limits::kProgramSeconds.
 ChildResult runChildModule(const std::string& file, const char* name, uint64_t memory, const ChildWork& work);
 
 /// The size of what was written, and all of it from `from` on; false: it could not be read.

@@ -2,7 +2,7 @@
 #pragma once
 #include <cstdint>
 
-namespace alpenglow::render {
+namespace alpenglow {
 
 /// A bijection of 64-bit integers (no collisions) in which every output bit depends on every input bit. The finaliser "Mix13" of
 /// D. Stafford, "Better Bit Mixing" (2011).
@@ -15,4 +15,4 @@ constexpr uint64_t mix64(uint64_t v) {
 /// The 24 high bits of h as a float in [0, 1): never 1.
 constexpr float unitFloat(uint32_t h) { return float(h >> 8) * 0x1p-24f; }
 
-} // namespace alpenglow::render
+} // namespace alpenglow

@@ -11,7 +11,7 @@ namespace alpenglow {
 
 namespace {
 
-/// Its address tells which file this code is in.
+/// Its address says which file this code is in.
 char placeOfThisCode;
 
 fs::path programFile() {

@@ -103,7 +103,7 @@ constexpr OptionDescription kAttributes[] = {
      "and no photon map is made that has no file.",
      "0"},
     {"light:group", "string", "\"\"", "\"key\"", Used,
-     "The label of a light in light path expressions, beside its handle (docs/lightpaths.md).", "\"\""},
+     "The label of a light in light path expressions, in addition to its handle (docs/lightpaths.md).", "\"\""},
     {"light:nsamples", "", "1", "16", Used, "BMRT's name of light:samples."},
     {"light:samples", "int", "1", "16", Used, "Samples of an area light in an illuminance loop, 1 to 1024.", "1"},
     {"light:samplingstrategy", "string", "none", "\"trace\"", Used,
@@ -118,12 +118,12 @@ constexpr OptionDescription kAttributes[] = {
     {"light:units", "string", "\"radiance\" under path, else by the shader", "\"samples\"", Used,
      "What an area light's Cl is: \"radiance\", or \"samples\": its geometry gives the mean of Cl over samples, as BMRT and "
      "3Delight had it."},
-    {"lightfilter:subset", "string", "", "", Ignored, "PRMan; a filter holds for all that its lights shine on"},
+    {"lightfilter:subset", "string", "", "", Ignored, "PRMan; a filter holds for all that its lights illuminate"},
     {"lighting:excludesubset", "string", "\"\"", "\"rim\"", Used,
-     "Lights of RIS that do not shine on what follows, as lighting:subset names them.", "\"\""},
+     "Lights of RIS that do not illuminate what follows, as lighting:subset names them.", "\"\""},
     {"lighting:mute", "int", "0", "1", Used, "1: a Light that follows is off.", "0"},
     {"lighting:subset", "string", "\"\"", "\"key rim\"", Used,
-     "The only lights of RIS that shine on what follows: handles, names of identifier:name or groups of grouping:membership of "
+     "The only lights of RIS that illuminate what follows: handles, names of identifier:name or groups of grouping:membership of "
      "lights (\"default\" without one), with blanks or commas between them.",
      "\"\""},
     {"photon:causticmap", "string", "\"\"", "\"caustics\"", Used,

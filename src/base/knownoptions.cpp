@@ -140,7 +140,7 @@ constexpr OptionDescription kOptions[] = {
     {"shutter:shutteropening", "float[2]", "0 1", "[0.25 0.75]", Used,
      "Parts of the shutter's time when it is wide open and when it begins to close; both go linearly.", "[0 1]"},
     {"statistics:displace_ratios", "", "", "", Ignored,
-     "PRMan; displacement beyond its bound is told, with the distance that suffices"},
+     "PRMan; displacement beyond its bound is reported, with the distance that suffices"},
     {"statistics:echoapi", "", "", "", Ignored, "Aqsis; alpenglow rib prints what is read"},
     {"statistics:endofframe", "int", "", "", Ignored, "several renderers; --stats is the way here"},
     {"statistics:filename", "string", "", "", Ignored, "several renderers; --stats is the way here"},
@@ -175,10 +175,9 @@ constexpr OptionDescription kOptions[] = {
 
 constexpr OptionDescription kHiderParameters[] = {
     {"aaSamples", "int", "1", "3", Used,
-     "raytrace: anti-aliasing by colours. A ray goes through the middle of each pixel; pixels that differ from one beside, above "
-     "or below get "
-     "this many by this many rays: 3, 5, 7 or 9; 1: off. A pixel is the mean of its own rays; PixelSamples and filters have no "
-     "say."},
+     "raytrace: anti-aliasing by colours. A ray goes through the middle of each pixel; pixels that differ from one at "
+     "either side, above or below get this many by this many rays: 3, 5, 7 or 9; 1: off. A pixel is the mean of its own "
+     "rays; PixelSamples and filters have no say."},
     {"aaThreshold", "float", "0.3", "0.1", Used,
      "raytrace, with aaSamples: sum of the differences of red, green and blue (each from 0 to 1) above which pixels differ."},
     {"adaptive", "int", "1", "0", Used,

@@ -3,7 +3,7 @@
 #pragma once
 #include <cstdint>
 
-namespace alpenglow::render {
+namespace alpenglow {
 
 /// Rows of requests for numbers, and the results. `stream`: call site, and whether a pair or a single number (x).
 struct alignas(64) NumberBlock {
@@ -17,4 +17,4 @@ using DrawNumbers = void (*)(NumberBlock*, uint64_t blocks);
 /// The same at 4, 8 or 16 lanes; null where this processor cannot run that.
 DrawNumbers drawNumbers(int lanes);
 
-} // namespace alpenglow::render
+} // namespace alpenglow

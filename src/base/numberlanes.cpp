@@ -1,6 +1,6 @@
 #include "base/numberlanes.h"
 
-namespace alpenglow::render {
+namespace alpenglow {
 
 // One for each file compiled from lanes/numbers.inc.
 void drawNumbers4(NumberBlock*, uint64_t);
@@ -23,4 +23,4 @@ void drawBlocks(std::span<NumberBlock> blocks) {
 
 void NumberRows::draw() { drawBlocks(std::span(blocks_).first((count_ + kSize - 1) / kSize)); }
 
-} // namespace alpenglow::render
+} // namespace alpenglow

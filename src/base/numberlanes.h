@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace alpenglow::render {
+namespace alpenglow {
 
 /// A list of requests for random numbers: first request all, then draw(), then read; clear() starts again in the same memory.
 class NumberRows {
@@ -41,4 +41,4 @@ private:
 /// Draws the numbers of complete blocks, with the widest lanes that this processor has.
 void drawBlocks(std::span<NumberBlock>);
 
-} // namespace alpenglow::render
+} // namespace alpenglow

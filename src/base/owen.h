@@ -10,7 +10,7 @@
 #pragma once
 #include <cstdint>
 
-namespace alpenglow::render {
+namespace alpenglow {
 
 /// The 32 bits in the opposite order.
 template <class U> constexpr U reverseBits(U v) {
@@ -101,4 +101,4 @@ template <class U> struct Scrambles {
     }
 };
 
-} // namespace alpenglow::render
+} // namespace alpenglow

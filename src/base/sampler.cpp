@@ -1,6 +1,6 @@
 #include "base/sampler.h"
 
-namespace alpenglow::render {
+namespace alpenglow {
 
 uint64_t Sampler::streamKey(uint32_t replica, uint32_t vertex, uint32_t site, uint32_t occurrence) const {
     const uint64_t key = mix64(seed_ ^ (pixel_ | replica));
@@ -16,4 +16,4 @@ float Sampler::get1(uint32_t vertex, uint32_t site, uint32_t occurrence, uint32_
     return SampleNumbers(*this, sampleIndex).get1(vertex, site, occurrence);
 }
 
-} // namespace alpenglow::render
+} // namespace alpenglow

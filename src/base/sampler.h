@@ -8,15 +8,15 @@
 // scrambles are hashes (owen.h): a pair takes the same few operations whatever the index.
 //
 // A pixel has kReplicas = 2 independently scrambled sequences: sample i is point i / 2 of replica i % 2. So after 2 * 2^m samples
-// each replica holds a complete (0,m,2)-net, and the difference of the two replica means tells the true error of their mean,
-// which the spread of dependent samples does not (docs/noise.md). Two is the least that tells it, and leaves the most
+// each replica holds a complete (0,m,2)-net, and the difference of the two replica means shows the true error of their mean,
+// which the spread of dependent samples does not (docs/noise.md). Two is the least that shows it, and leaves the most
 // stratification: noise.h pools what two say too vaguely in one pixel.
 #pragma once
 #include "base/hash.h"
 #include "base/owen.h"
 #include "base/vec.h"
 
-namespace alpenglow::render {
+namespace alpenglow {
 
 inline constexpr uint32_t kReplicas = 2;
 
@@ -98,4 +98,4 @@ private:
 inline uint32_t sobol0(uint32_t i) { return reverseBits<uint32_t>(i); }
 inline uint32_t sobol1(uint32_t i) { return reverseBits<uint32_t>(sobol1Reversed<uint32_t>(i)); }
 
-} // namespace alpenglow::render
+} // namespace alpenglow

@@ -15,7 +15,7 @@ namespace alpenglow::capi {
 
 namespace {
 
-/// Options of the program are told in words of the command line; whoever calls a library has none.
+/// Messages name options as the command line spells them; who calls a library has no command line.
 void reportOfProgram(Diagnostic d) {
     if ((d.message + d.hint).find("--") != std::string::npos)
         d.hint += std::string(d.hint.empty() ? "" : "; ") +

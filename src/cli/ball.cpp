@@ -14,8 +14,8 @@ namespace {
 std::string call(const std::string& request, const BallSettings& b, const std::string& handle = "") {
     std::string t = request + " " + ribString(b.shader) + handle;
     for (const rsl::ParameterValue& v : b.given) {
-        const size_t count = std::max(v.strings.size(), v.numbers.size() / size_t(rsl::componentCount(v.type.base)));
-        t += fmt::format(" \"uniform {}{} {}\" [", rsl::toString(v.type.element()),
+        const size_t count = std::max(v.strings.size(), v.numbers.size() / size_t(shadeops::componentCount(v.type.base)));
+        t += fmt::format(" \"uniform {}{} {}\" [", shadeops::toString(v.type.element()),
                          v.type.array ? "[" + std::to_string(count) + "]" : "", v.name);
         for (const std::string& s : v.strings) t += ribString(s) + " ";
         for (const float f : v.numbers) t += fmt::format("{} ", f);

@@ -123,10 +123,10 @@ void addCompile(CLI::App& app, int* status) {
         if (a->files.empty()) throw CLI::RequiredError("shaders");
         OrderedJson report = OrderedJson::array();
         const auto print = printer(a->quiet ? Severity::Error : Severity::Warning);
-        std::string current, input;                                    // the current shader, and the text from standard input
-        std::set<std::tuple<std::string, int, int, std::string>> told; // messages of a file, each printed once
+        std::string current, input;                                       // the current shader, and the text from standard input
+        std::set<std::tuple<std::string, int, int, std::string>> printed; // messages of a file, each printed once
         Diagnostics diags([&, print, lines = limits::kSourceLines](Diagnostic d) mutable {
-            if (d.place.line > 0 && !told.emplace(d.place.file, d.place.line, d.place.column, d.message).second) return;
+            if (d.place.line > 0 && !printed.emplace(d.place.file, d.place.line, d.place.column, d.message).second) return;
             if (d.place.file.empty() && a->json) d.place.file = current;
             if (d.sourceLine.empty() && d.place.line > 0 && lines-- > 0) d.sourceLine = lineOf(d.place, input);
             rsl::complete(d);

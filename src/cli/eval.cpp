@@ -50,13 +50,13 @@ void addEval(CLI::App& app, int* status) {
         rsl::Evaluation e = rsl::evaluate(compiler, a->setup, a->expression, options, diags, answer);
         if (a->json) {
             nlohmann::ordered_json found = {{"ok", e.ok}, {"printed", e.printed}};
-            if (e.ok && e.type.base != rsl::Base::Void)
+            if (e.ok && e.type.base != shadeops::Base::Void)
                 found.update({{"type", toString(e.type)}, {"text", e.text}, {"numbers", e.numbers}});
             printReport(std::move(found), std::move(said));
         } else {
             std::fputs(printable(e.printed).c_str(), stdout);
         }
-        if (!a->json && e.ok && e.type.base != rsl::Base::Void)
+        if (!a->json && e.ok && e.type.base != shadeops::Base::Void)
             std::printf("%s\n", (isatty(STDOUT_FILENO) ? printable(e.text) : e.text).c_str());
         *status = e.ok && diags.errors() == 0 ? kDone : kDoneWithErrors;
     });

@@ -6,8 +6,8 @@
 
 namespace alpenglow::cli {
 
-FramesAtOnce::FramesAtOnce(int most, const render::RenderSettings& s, Diagnostics& told)
-    : told_(told), memory_(s.memoryLimit), threads_(s.threads > 0 ? s.threads : defaultThreads()) {
+FramesAtOnce::FramesAtOnce(int most, const render::RenderSettings& s, Diagnostics& messages)
+    : messages_(messages), memory_(s.memoryLimit), threads_(s.threads > 0 ? s.threads : defaultThreads()) {
     if (most <= 1) return;
     render::FrameProcesses::Use use;
     use.most = most;
@@ -18,7 +18,7 @@ FramesAtOnce::FramesAtOnce(int most, const render::RenderSettings& s, Diagnostic
         if (reader_) reader_->endPrograms();
     };
     watchStopSignal(use.stopSignal); // before the first process: it would end one that has just begun
-    processes_.emplace(std::move(use), told);
+    processes_.emplace(std::move(use), messages);
     said_.setHandler([this](const Diagnostic& d) { processes_->say(d); });
 }
 

@@ -12,20 +12,20 @@ namespace alpenglow::cli {
 /// The processes of a run, or none if frames are drawn one by one.
 class FramesAtOnce {
 public:
-    /// most: frames that are drawn at the same time; 1: one by one. `told` prints messages and must outlive this object.
-    FramesAtOnce(int most, const render::RenderSettings&, Diagnostics& told);
+    /// most: frames that are drawn at the same time; 1: one by one. `messages` prints messages and must outlive this object.
+    FramesAtOnce(int most, const render::RenderSettings&, Diagnostics& messages);
     FramesAtOnce(const FramesAtOnce&) = delete;
     FramesAtOnce& operator=(const FramesAtOnce&) = delete;
     /// Null: frames are drawn one by one.
     render::FrameProcesses* processes() { return processes_ ? &*processes_ : nullptr; }
     /// Messages reported here are printed in the order of the frames.
-    Diagnostics& said() { return processes_ ? said_ : told_; }
+    Diagnostics& said() { return processes_ ? said_ : messages_; }
     /// Sets the reader, which must outlive all frames.
     void setReader(ri::RibReader& r) { reader_ = &r; }
 
 private:
     void begin(bool alone);
-    Diagnostics& told_;
+    Diagnostics& messages_;
     Diagnostics said_;
     std::optional<render::FrameProcesses> processes_;
     std::optional<MemoryLimit> share_; ///< in a process: of the run's memory

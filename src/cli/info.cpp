@@ -25,19 +25,19 @@ int shadeops(const std::string& name, bool json) {
     if (name.empty()) {
         if (json) {
             OrderedJson all = OrderedJson::array();
-            for (const auto& s : rsl::shadeops()) all.push_back(manualJson(s));
+            for (const auto& s : shadeops::allShadeops()) all.push_back(manualJson(s));
             std::printf("%s\n", all.dump(2).c_str());
             return kDone;
         }
-        for (const auto& s : rsl::shadeops())
+        for (const auto& s : shadeops::allShadeops())
             std::printf("%-18s %-24s %s\n", s.name.c_str(), s.section.c_str(),
-                        s.lowering == rsl::Lowering::Unavailable ? "(not yet available)" : "");
+                        s.lowering == shadeops::Lowering::Unavailable ? "(not yet available)" : "");
         return kDone;
     }
-    const rsl::Shadeop* s = rsl::findShadeop(name);
+    const shadeops::Shadeop* s = shadeops::findShadeop(name);
     if (!s) {
         std::vector<std::string> names;
-        for (const auto& o : rsl::shadeops()) names.push_back(o.name);
+        for (const auto& o : shadeops::allShadeops()) names.push_back(o.name);
         std::string near = nearestName(name, names);
         std::fprintf(stderr, "alpenglow: there is no shadeop \"%s\"%s%s\n", printable(name).c_str(),
                      near.empty() ? "" : "; did you mean ", near.c_str());
@@ -107,7 +107,7 @@ int shader(const InfoArguments& a) {
             std::fprintf(stderr, "  hint: did you mean \"%s\"?\n", printable(near).c_str());
         return kDoneWithErrors;
     }
-    // A file tells about all of its shaders, beginning with the one that its name means; a name about one.
+    // A file describes all of its shaders, beginning with the one that its name means; a name about one.
     std::vector<std::shared_ptr<const rsl::CompiledShader>> wanted{shader};
     if (a.file.ends_with(".sl"))
         for (auto& other : rsl::ShaderCompiler::allOfFile(shader))

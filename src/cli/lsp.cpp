@@ -156,9 +156,9 @@ void addLsp(CLI::App& app, int* status) {
         options.dialect = a->dialect;
         const auto plugins = std::make_shared<rsl::PluginLibrary>();
         if (a->allowExec)
-            options.plugin = [plugins, paths = options.includePaths](const std::string& name, const std::string& beside,
+            options.plugin = [plugins, paths = options.includePaths](const std::string& name, const std::string& folder,
                                                                      rsl::Raised& why, std::string& hint) {
-                std::vector<std::string> all{beside};
+                std::vector<std::string> all{folder};
                 all.insert(all.end(), paths.begin(), paths.end());
                 return plugins->load(name, all, why, hint);
             };

@@ -402,7 +402,7 @@ std::vector<const rsl::Function*> Document::functions(const std::string& name) c
 namespace {
 
 /// The type as it is written: handles are of type shader.
-std::string typeOf(const rsl::Symbol& s) { return rsl::toString(s.type.element()); }
+std::string typeOf(const rsl::Symbol& s) { return shadeops::toString(s.type.element()); }
 
 std::string brackets(const rsl::Symbol& s) {
     if (s.type.array < 0 || s.open || s.resizable) return "[]";
@@ -419,7 +419,7 @@ std::string declarationOf(const rsl::Symbol& s) {
 }
 
 std::string signatureOf(const rsl::Function& f, const rsl::Program& program) {
-    std::string result = rsl::toString(f.result), list;
+    std::string result = shadeops::toString(f.result), list;
     for (size_t i = 0; i < f.parameters.size();) {
         const rsl::Symbol& p = *f.parameters[i];
         const bool whole = p.whole.structure >= 0; // the first of the members that stand for a structure

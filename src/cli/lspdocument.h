@@ -77,8 +77,8 @@ public:
         const rsl::Symbol* symbol = nullptr;
         const rsl::Function* function = nullptr;
         const rsl::Shader* shader = nullptr;
-        const rsl::Shadeop* shadeop = nullptr;
-        const rsl::Signature* signature = nullptr;
+        const shadeops::Shadeop* shadeop = nullptr;
+        const shadeops::Signature* signature = nullptr;
     };
     Use useAt(size_t word) const;
     /// All of them, by the positions of their words.

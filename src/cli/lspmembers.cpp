@@ -139,7 +139,7 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
     const rsl::StructVariable* variable = nullptr;
     const auto look = [&](const std::vector<std::unique_ptr<rsl::Symbol>>& symbols) {
         for (const auto& s : symbols) {
-            handle |= s->type.base == rsl::Base::Shader && s->name == r.name;
+            handle |= s->type.base == shadeops::Base::Shader && s->name == r.name;
             if (s->name.compare(0, head.size(), head) != 0) continue;
             if (!variable) variable = s->of.get();
             const std::string rest = s->name.substr(head.size());

@@ -58,7 +58,7 @@ Meaning meaningAt(const Document& d, const Document::Word& w, const std::map<siz
     if (const auto list = d.functions(name); !list.empty()) return declared(name, d.origin(list[0]->place));
     if (const auto m = d.macro(name))
         return {Meaning::Kind::Macro, name, normalPath(d.path()), int(m->first) + 1, int(m->second) + 1};
-    if (rsl::findShadeop(name)) return {Meaning::Kind::Shadeop, name, "", 0, 0};
+    if (shadeops::findShadeop(name)) return {Meaning::Kind::Shadeop, name, "", 0, 0};
     return {};
 }
 
@@ -192,7 +192,7 @@ Json LanguageServer::rename(const Json& params) {
     const std::string to = n->get<std::string>();
     if (!isName(to)) throw Refused{"\"" + to + "\" is no name: letters, digits and _, and no digit first"};
     const auto& keywords = languageKeywords();
-    if (std::find(keywords.begin(), keywords.end(), to) != keywords.end() || rsl::findShadeop(to) || isPredefined(to))
+    if (std::find(keywords.begin(), keywords.end(), to) != keywords.end() || shadeops::findShadeop(to) || isPredefined(to))
         throw Refused{"\"" + to + "\" belongs to the language; choose another name"};
     Json changes = Json::object();
     eachRelated(*d, [&](const std::string& uri, const Document& in) {

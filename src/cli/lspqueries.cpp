@@ -38,7 +38,7 @@ const rsl::GlobalVariable* globalNamed(const std::string& name, std::optional<rs
 }
 
 std::string globalText(const rsl::GlobalVariable& g) {
-    return std::string(g.uniform ? "uniform " : "varying ") + rsl::toString(g.type) + " " + g.name;
+    return std::string(g.uniform ? "uniform " : "varying ") + shadeops::toString(g.type) + " " + g.name;
 }
 
 std::string parameterText(const rsl::ShaderParameter& p) {
@@ -123,12 +123,12 @@ Json LanguageServer::completion(const Json& params) {
     if (where == Document::Where::String) {
         // The names of the optional parameters of the shadeop that is being called.
         const auto call = d->callAround(at);
-        const rsl::Shadeop* op = call ? rsl::findShadeop(call->name) : nullptr;
+        const shadeops::Shadeop* op = call ? shadeops::findShadeop(call->name) : nullptr;
         if (op)
             for (const auto& o : op->optional)
                 items.push_back({{"label", o.name},
                                  {"kind", int(kProperty)},
-                                 {"detail", std::string(o.output ? "output " : "") + rsl::toString(o.type) +
+                                 {"detail", std::string(o.output ? "output " : "") + shadeops::toString(o.type) +
                                                 (o.defaultText.empty() ? "" : " = " + o.defaultText)},
                                  {"documentation", o.doc}});
         return items;
@@ -153,7 +153,7 @@ Json LanguageServer::completion(const Json& params) {
     }
     const Document::Around a = d->around(at);
     const auto variable = [&](const rsl::Symbol& s) {
-        if (s.type.base == rsl::Base::Void || s.origin == rsl::Symbol::Origin::Global) return;
+        if (s.type.base == shadeops::Base::Void || s.origin == rsl::Symbol::Origin::Global) return;
         // A local is known behind its declaration.
         if (s.origin == rsl::Symbol::Origin::Local && d->isHere(s.place) &&
             d->offset(size_t(s.place.line) - 1, size_t(std::max(1, s.place.column)) - 1) >= begin)
@@ -171,7 +171,7 @@ Json LanguageServer::completion(const Json& params) {
     }
     for (const rsl::Function* f : d->functions())
         if (f->name.find("->") == std::string::npos) offer(f->name, kFunction, signatureOf(*f, *d->program()));
-    for (const auto& s : rsl::shadeops()) {
+    for (const auto& s : shadeops::allShadeops()) {
         if (s.name.rfind("__", 0) == 0) continue;
         if (a.shader && !(s.contexts & rsl::contextOf(a.shader->kind))) continue;
         const std::string more = s.signatures.size() > 1 ? "  (+" + std::to_string(s.signatures.size() - 1) + ")" : std::string();
@@ -212,11 +212,11 @@ Json LanguageServer::hover(const Json& params) {
     };
     if (string) {
         const auto call = d->callAround(word->first);
-        const rsl::Shadeop* op = call ? rsl::findShadeop(call->name) : nullptr;
+        const shadeops::Shadeop* op = call ? shadeops::findShadeop(call->name) : nullptr;
         if (op)
             for (const auto& o : op->optional)
                 if (o.name == name)
-                    text = fenced(std::string(o.output ? "output " : "") + rsl::toString(o.type) + " \"" + o.name + "\"" +
+                    text = fenced(std::string(o.output ? "output " : "") + shadeops::toString(o.type) + " \"" + o.name + "\"" +
                                   (o.defaultText.empty() ? "" : " = " + o.defaultText)) +
                            "\n" + o.doc + "\n";
     } else if (const auto m = receiver ? memberNamed(*d, *receiver, word->first, name) : std::nullopt) {
@@ -244,7 +244,7 @@ Json LanguageServer::hover(const Json& params) {
         text = manualMarkdown(*use.shadeop, use.signature);
     } else if (const auto list = d->functions(name); !list.empty()) {
         function(*list[0]);
-    } else if (const rsl::Shadeop* shadeop = rsl::findShadeop(name)) {
+    } else if (const shadeops::Shadeop* shadeop = shadeops::findShadeop(name)) {
         text = manualMarkdown(*shadeop);
     } else if (const auto* g = globalNamed(name, kind())) {
         global(*g);
@@ -348,7 +348,7 @@ Json LanguageServer::signatureHelp(const Json& params) {
         texts.push_back(signatureOf(*f, *d->program()));
     }
     size_t chosen = 0;
-    if (const rsl::Shadeop* op = rsl::findShadeop(call->name)) {
+    if (const shadeops::Shadeop* op = shadeops::findShadeop(call->name)) {
         doc = op->doc;
         const Document::Use use = d->useAt(call->at);
         for (const auto& s : op->signatures) {

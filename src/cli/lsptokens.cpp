@@ -51,7 +51,7 @@ Token tokenOf(const Document& d, const Document::Word& w, const std::map<size_t,
     if (d.structure(name)) return {Struct, 0};
     const auto& keywords = languageKeywords();
     if (std::find(keywords.begin(), keywords.end(), name) != keywords.end()) return {}; // the grammar's
-    if (rsl::findShadeop(name)) return {Function, kDefaultLibrary};
+    if (shadeops::findShadeop(name)) return {Function, kDefaultLibrary};
     if (const auto u = d.named(w.begin); u.symbol) return ofSymbol(d, *u.symbol, w.begin);
     return {};
 }

@@ -10,50 +10,50 @@ using OrderedJson = nlohmann::ordered_json;
 
 namespace {
 
-const char* loweringText(rsl::Lowering l) {
+const char* loweringText(shadeops::Lowering l) {
     switch (l) {
-    case rsl::Lowering::Runtime:
+    case shadeops::Lowering::Runtime:
         return "machine code inside the kernel";
-    case rsl::Lowering::Rsl:
+    case shadeops::Lowering::Rsl:
         return "written in RSL, inlined";
-    case rsl::Lowering::Special:
+    case shadeops::Lowering::Special:
         return "built into the compiler";
-    case rsl::Lowering::Service:
+    case shadeops::Lowering::Service:
         return "answered by the renderer at once";
-    case rsl::Lowering::Request:
+    case shadeops::Lowering::Request:
         return "answered by rays or lights";
-    case rsl::Lowering::Unavailable:
+    case shadeops::Lowering::Unavailable:
         return "not yet available: it type-checks, a call is reported once";
     }
     return "";
 }
 
-const char* derivativeText(rsl::DerivativeRule d) {
+const char* derivativeText(shadeops::DerivativeRule d) {
     switch (d) {
-    case rsl::DerivativeRule::Jet:
+    case shadeops::DerivativeRule::Jet:
         return "exact";
-    case rsl::DerivativeRule::Zero:
+    case shadeops::DerivativeRule::Zero:
         return "zero (constant almost everywhere)";
-    case rsl::DerivativeRule::ZeroWarn:
+    case shadeops::DerivativeRule::ZeroWarn:
         return "taken as zero, with a warning";
-    case rsl::DerivativeRule::Gradient:
+    case shadeops::DerivativeRule::Gradient:
         return "from the slope of the filtered map; second ones those of the coordinates alone";
-    case rsl::DerivativeRule::Inherent:
+    case shadeops::DerivativeRule::Inherent:
         return "exact";
     }
     return "";
 }
 
-const char* biasName(rsl::Bias b) {
-    return b == rsl::Bias::Unbiased ? "unbiased" : b == rsl::Bias::Consistent ? "consistent" : "biased";
+const char* biasName(shadeops::Bias b) {
+    return b == shadeops::Bias::Unbiased ? "unbiased" : b == shadeops::Bias::Consistent ? "consistent" : "biased";
 }
 
-std::string biasText(const rsl::Shadeop& s) {
+std::string biasText(const shadeops::Shadeop& s) {
     return std::string(biasName(s.bias)) + (s.biasReason.empty() ? "" : " (" + s.biasReason + ")");
 }
 
-std::string optionalText(const rsl::OptionalParameter& o) {
-    return std::string(o.output ? "output " : "") + rsl::toString(o.type) + " \"" + o.name + "\"" +
+std::string optionalText(const shadeops::OptionalParameter& o) {
+    return std::string(o.output ? "output " : "") + shadeops::toString(o.type) + " \"" + o.name + "\"" +
            (o.defaultText.empty() ? "" : " = " + o.defaultText);
 }
 
@@ -73,12 +73,12 @@ std::string headingAnchor(std::string name) {
     return name;
 }
 
-bool isInternal(const rsl::Shadeop& s) { return s.name.rfind("__", 0) == 0; }
+bool isInternal(const shadeops::Shadeop& s) { return s.name.rfind("__", 0) == 0; }
 
 } // namespace
 
 std::string contextText(uint32_t contexts) {
-    if ((contexts & rsl::kAnyContext) == rsl::kAnyContext) return "any shader";
+    if ((contexts & shadeops::kAnyContext) == shadeops::kAnyContext) return "any shader";
     std::string t;
     for (int k = 0; k < 6; ++k)
         if (const auto kind = rsl::ShaderKind(k); contexts & rsl::contextOf(kind))
@@ -86,7 +86,7 @@ std::string contextText(uint32_t contexts) {
     return t;
 }
 
-OrderedJson manualJson(const rsl::Shadeop& s) {
+OrderedJson manualJson(const shadeops::Shadeop& s) {
     OrderedJson j;
     j["name"] = s.name;
     j["section"] = s.section;
@@ -96,7 +96,7 @@ OrderedJson manualJson(const rsl::Shadeop& s) {
     for (int k = 0; k < 6; ++k)
         if (s.contexts & rsl::contextOf(rsl::ShaderKind(k))) j["contexts"].push_back(toString(rsl::ShaderKind(k)));
     j["evaluation"] = loweringText(s.lowering);
-    j["available"] = s.lowering != rsl::Lowering::Unavailable;
+    j["available"] = s.lowering != shadeops::Lowering::Unavailable;
     j["derivatives"] = derivativeText(s.derivative);
     j["pure"] = s.pure;
     j["bias"] = biasName(s.bias);
@@ -104,7 +104,7 @@ OrderedJson manualJson(const rsl::Shadeop& s) {
     j["optional"] = OrderedJson::array();
     for (const auto& o : s.optional)
         j["optional"].push_back({{"name", o.name},
-                                 {"type", rsl::toString(o.type)},
+                                 {"type", shadeops::toString(o.type)},
                                  {"output", o.output},
                                  {"default", o.defaultText},
                                  {"doc", o.doc}});
@@ -118,7 +118,7 @@ OrderedJson manualJson(const rsl::Shadeop& s) {
     return j;
 }
 
-std::string manualText(const rsl::Shadeop& s) {
+std::string manualText(const shadeops::Shadeop& s) {
     std::string t = s.name + "  (" + s.section + ")\n\n";
     for (const auto& g : s.signatures) t += "    " + g.text + "\n";
     if (!s.doc.empty()) t += "\n" + s.doc + "\n";
@@ -137,7 +137,7 @@ std::string manualText(const rsl::Shadeop& s) {
     return t;
 }
 
-std::string manualMarkdown(const rsl::Shadeop& s, const rsl::Signature* first) {
+std::string manualMarkdown(const shadeops::Shadeop& s, const shadeops::Signature* first) {
     std::string t = "```rsl\n";
     if (first) t += first->text + "\n";
     for (const auto& g : s.signatures)
@@ -146,7 +146,7 @@ std::string manualMarkdown(const rsl::Shadeop& s, const rsl::Signature* first) {
     if (!s.optional.empty()) {
         t += "\n| optional parameter | default | meaning |\n|---|---|---|\n";
         for (const auto& o : s.optional)
-            t += "| `" + std::string(o.output ? "output " : "") + rsl::toString(o.type) + " \"" + o.name + "\"` | " +
+            t += "| `" + std::string(o.output ? "output " : "") + shadeops::toString(o.type) + " \"" + o.name + "\"` | " +
                  cell(o.defaultText) + " | " + cell(o.doc) + " |\n";
     }
     if (!s.examples.empty()) t += "\nExamples:\n\n";
@@ -161,8 +161,8 @@ std::string manualMarkdown(const rsl::Shadeop& s, const rsl::Signature* first) {
 
 std::string manualPage() {
     std::vector<std::string> sections;
-    std::map<std::string, std::vector<const rsl::Shadeop*>> bySection;
-    for (const auto& s : rsl::shadeops()) {
+    std::map<std::string, std::vector<const shadeops::Shadeop*>> bySection;
+    for (const auto& s : shadeops::allShadeops()) {
         if (isInternal(s)) continue;
         bySection[s.section].push_back(&s);
     }
@@ -176,12 +176,12 @@ std::string manualPage() {
         "mean for any number of samples, *consistent* ones in the limit, *biased* ones for the reason that is given.\n\n";
     for (const auto& name : sections) {
         t += "**" + name + "**:";
-        for (const rsl::Shadeop* s : bySection[name]) t += " [" + s->name + "](#" + headingAnchor(s->name) + ")";
+        for (const shadeops::Shadeop* s : bySection[name]) t += " [" + s->name + "](#" + headingAnchor(s->name) + ")";
         t += "\n\n";
     }
     for (const auto& name : sections) {
         t += "## " + name + "\n\n";
-        for (const rsl::Shadeop* s : bySection[name]) t += "### " + s->name + "\n\n" + manualMarkdown(*s) + "\n";
+        for (const shadeops::Shadeop* s : bySection[name]) t += "### " + s->name + "\n\n" + manualMarkdown(*s) + "\n";
     }
     t.pop_back();
     return t;

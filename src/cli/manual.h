@@ -11,10 +11,10 @@ namespace alpenglow::cli {
 std::string contextText(uint32_t contexts);
 
 /// The descriptor as text, as `alpenglow info --shadeops NAME` prints it.
-std::string manualText(const rsl::Shadeop&);
-nlohmann::ordered_json manualJson(const rsl::Shadeop&);
+std::string manualText(const shadeops::Shadeop&);
+nlohmann::ordered_json manualJson(const shadeops::Shadeop&);
 /// Without a heading. `first` (may be null) is the signature to be shown before the others.
-std::string manualMarkdown(const rsl::Shadeop&, const rsl::Signature* first = nullptr);
+std::string manualMarkdown(const shadeops::Shadeop&, const shadeops::Signature* first = nullptr);
 /// The whole page docs/shadeops.md: by section, every shadeop that a shader may name.
 std::string manualPage();
 

@@ -163,7 +163,7 @@ void takeFlag(const OldFlag& f, const std::string& inlineValue, const std::vecto
         return;
     }
     if (f.use == Use::Dropped || f.use == Use::Noted) {
-        (f.use == Use::Noted ? out->told : out->notes)
+        (f.use == Use::Noted ? out->withoutEquivalent : out->notes)
             .push_back(fmt::format("{} of {} has no effect: {}", f.name, f.renderers, f.here));
         return;
     }

@@ -28,9 +28,9 @@ std::span<const OldFlag> oldFlags();
 /// A command line with the flags of other renderers replaced.
 struct TranslatedFlags {
     std::vector<std::string> arguments;
-    std::vector<std::string> notes; ///< what was replaced or ignored, a line each
-    std::vector<std::string> told;  ///< the same for flags without an equivalent
-    std::string error;              ///< not "": a flag that cannot be taken, and what to write instead
+    std::vector<std::string> notes;             ///< what was replaced or ignored, a line each
+    std::vector<std::string> withoutEquivalent; ///< those that have no effect, a line each
+    std::string error;                          ///< not "": a flag that cannot be taken, and what to write instead
 };
 
 /// `arguments`: those of `render`, without its name. Arguments that are no such flags stay as they are.

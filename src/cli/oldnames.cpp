@@ -156,7 +156,7 @@ constexpr OldFlag kPtcFlags[] = {
     {"-omitgeometry", 1, "brickmake", Use::Dropped, "brick maps always hold which voxels are met"},
     {"-progress", 1, "brickmake", Use::Dropped, kSaid},
     {"-radiusscale", 1, "brickmake, ptc2brick", Use::Noted, "points keep their radii"},
-    {"-splitangle", 1, "brickmake", Use::Noted, "sides of surfaces are told apart by their normals"},
+    {"-splitangle", 1, "brickmake", Use::Noted, "sides of surfaces are distinguished by their normals"},
 };
 
 } // namespace

@@ -218,7 +218,7 @@ void Blocks::trace(size_t block, render::Tracer& tracer, const Ring& ring, const
     for (uint32_t begin = 0; begin < each; begin += 1024) {
         std::vector<integrator::CameraRay> rays;
         for (uint32_t s = begin; s < std::min(each, begin + 1024); ++s) {
-            const Vec2 e = render::Sampler(seed, int(block), 0).get2(0, render::kUseFilter, 0, s);
+            const Vec2 e = Sampler(seed, int(block), 0).get2(0, render::kUseFilter, 0, s);
             rays.push_back(ray);
             rays.back().origin = Vec3(transformPoint(toCamera, ring.begin(e)));
             rays.back().sample = s;

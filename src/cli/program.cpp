@@ -96,7 +96,7 @@ void takeOldFlags(CommandLine& line) {
         for (const std::string& n : notes) std::fprintf(stderr, "note: %s\n", printable(n).c_str());
     };
     if (has("-v") || has("--verbose")) say(t.notes);
-    if (!has("-q") && !has("--quiet")) say(t.told);
+    if (!has("-q") && !has("--quiet")) say(t.withoutEquivalent);
 }
 
 /// Finds the command, and makes old tools' spellings what the parser takes: prman's -res, maketx's -envlatl, numbers like -.5.

@@ -59,7 +59,7 @@ bool takeParameter(const std::string& argument, const std::string& shader, std::
         diags.report(Severity::Error, Rie::BadToken, {shader}, "it has no parameter \"" + name + "\"", nearestName(name, names));
         return false;
     }
-    if (i->type.base == rsl::Base::String) {
+    if (i->type.base == shadeops::Base::String) {
         i->strings = {text};
     } else {
         auto numbers = parseNumbers(text);
@@ -124,7 +124,7 @@ int shadePatch(const ShadeArguments& a, rsl::ShaderCompiler& compiler, const Sha
     for (const auto& v : given) names.insert(v.name);
     options.computedParameters = shader->computedParameters(names, {});
     for (const auto& v : values)
-        if (v.type.base == rsl::Base::String && v.type.array == 0 && !v.strings.empty())
+        if (v.type.base == shadeops::Base::String && v.type.array == 0 && !v.strings.empty())
             options.stringParameters.emplace_back(v.name, v.strings[0]);
     const auto kernel = compiler.kernel(shader, options, diags);
     if (!kernel) return kNothingRendered;

@@ -24,10 +24,11 @@ std::string lower(std::string s) {
 std::string storageText(rsl::Storage s) { return s == rsl::Storage::Varying ? "varying" : "uniform"; }
 
 /// The type as the shader writes it: handles are of type shader, arrays of open length have none.
-std::string typeText(rsl::Type t, const rsl::Symbol* s) {
+std::string typeText(shadeops::Type t, const rsl::Symbol* s) {
     if (s && (s->type.array < 0 || s->open || s->resizable)) t.array = -1;
-    if (s && s->type.base == rsl::Base::Shader) t.base = rsl::Base::Shader; // parameters have the types that scenes give
-    return rsl::toString(t);
+    if (s && s->type.base == shadeops::Base::Shader)
+        t.base = shadeops::Base::Shader; // parameters have the types that scenes give
+    return shadeops::toString(t);
 }
 
 /// Does the value depend on nothing but numbers and texts in the shader?
@@ -83,7 +84,8 @@ std::optional<double> numberOf(const rsl::Expr& e) {
     using rsl::ExprKind;
     using rsl::ExprOp;
     if (e.kind == ExprKind::Number) return e.number;
-    if (e.kind == ExprKind::Cast && !e.space && e.type.base == rsl::Base::Float && !e.args.empty()) return numberOf(*e.args[0]);
+    if (e.kind == ExprKind::Cast && !e.space && e.type.base == shadeops::Base::Float && !e.args.empty())
+        return numberOf(*e.args[0]);
     if (e.kind == ExprKind::Unary && e.op == ExprOp::Negate) {
         const auto a = numberOf(*e.args[0]);
         return a ? std::optional(-*a) : a;
@@ -140,16 +142,16 @@ DefaultDescription describeDefault(const rsl::ShaderParameter& p, const rsl::Par
     d.value = std::move(value);
     d.computed = computed;
     const rsl::Expr* e = p.defaultValue.get();
-    d.null = p.symbol->type == rsl::Type{rsl::Base::Shader, 0} && d.value.strings == std::vector<std::string>{""};
+    d.null = p.symbol->type == shadeops::Type{shadeops::Base::Shader, 0} && d.value.strings == std::vector<std::string>{""};
     d.named = e && !d.written.empty() && asks(*e);
     if (e && e->kind == rsl::ExprKind::ArrayList && e->text == "{}")
         d.value.strings.clear(), d.value.numbers.clear(); // {} has no elements
     while (e && !e->space && e->kind == rsl::ExprKind::Cast && !e->args.empty()) e = e->args[0].get();
     if (!e || !e->space || e->space->kind != rsl::ExprKind::String) return d;
     d.space = e->space->text;
-    d.inSpace = numbersOf(*e, size_t(rsl::componentCount(e->type.base)));
+    d.inSpace = numbersOf(*e, size_t(shadeops::componentCount(e->type.base)));
     // Points stay in the space in which they are written: what they are elsewhere, a scene knows.
-    if (computed && !d.inSpace.empty() && e->type.base != rsl::Base::Color && p.symbol->type.array == 0) {
+    if (computed && !d.inSpace.empty() && e->type.base != shadeops::Base::Color && p.symbol->type.array == 0) {
         d.computed = false;
         d.value.numbers = d.inSpace;
     }
@@ -195,7 +197,7 @@ std::string quoted(const std::string& s) {
 }
 
 std::string valueText(const rsl::ParameterValue& v) {
-    if (v.type.base != rsl::Base::String) return rsl::formatNumbers(v.numbers);
+    if (v.type.base != shadeops::Base::String) return rsl::formatNumbers(v.numbers);
     std::string t;
     for (const std::string& s : v.strings) t += (t.empty() ? "" : " ") + quoted(s);
     return t;
@@ -205,7 +207,7 @@ std::string defaultText(const ParameterDescription& p) {
     const DefaultDescription& d = p.byDefault;
     if (!d.there) return "";
     if (d.computed) return " = " + (d.written.empty() ? "" : d.written + "  ") + "(computed)";
-    if (!d.space.empty() && d.value.type.base == rsl::Base::Color) // both, as they are different numbers
+    if (!d.space.empty() && d.value.type.base == shadeops::Base::Color) // both, as they are different numbers
         return " = " + (d.written.empty() ? quoted(d.space) + " " + rsl::formatNumbers(d.inSpace) : d.written) + "  (rgb " +
                valueText(d.value) + ")";
     if (d.null) return " = null";
@@ -272,8 +274,8 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
         if (!s.object || !other->body) continue;
         for (const auto& b : other->body->body)
             for (const auto& v : b->declarators)
-                if (v.symbol && !added(v.symbol->place) && v.symbol->name[0] != '(' && v.symbol->type.base != rsl::Base::Void &&
-                    members.insert(v.symbol->name).second)
+                if (v.symbol && !added(v.symbol->place) && v.symbol->name[0] != '(' &&
+                    v.symbol->type.base != shadeops::Base::Void && members.insert(v.symbol->name).second)
                     d.members.push_back({typeText(v.symbol->type, v.symbol), v.symbol->name, storageText(v.symbol->storage),
                                          other->publics.count(v.symbol->name.substr(0, v.symbol->name.find("->"))) > 0,
                                          v.symbol->isConstant});
@@ -297,7 +299,7 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
         if (!v.space.empty()) q["space"] = v.space;
         if (v.there && !v.computed) {
             if (v.null) q["default"] = nullptr;
-            else if (v.value.type.base == rsl::Base::String) q["default"] = v.value.strings;
+            else if (v.value.type.base == shadeops::Base::String) q["default"] = v.value.strings;
             else q["default"] = v.value.numbers;
         }
         if (v.there && v.computed) q["computed"] = true;
@@ -325,8 +327,8 @@ nlohmann::ordered_json descriptionJson(const ShaderDescription& d) {
         j["structs"].push_back({{"name", s.name}, {"members", std::move(members)}, {"methods", std::move(methods)}});
     }
     for (const auto& plugin : d.plugins)
-        for (const rsl::Shadeop& f : plugin->functions)
-            for (const rsl::Signature& s : f.signatures)
+        for (const shadeops::Shadeop& f : plugin->functions)
+            for (const shadeops::Signature& s : f.signatures)
                 j["plugins"][plugin->name].push_back({{"signature", s.text}, {"doc", f.doc}});
     std::map<std::string, size_t> times;
     for (const auto& [key, value] : d.annotations) {
@@ -381,8 +383,8 @@ std::string descriptionText(const ShaderDescription& d) {
         t += "\n";
     }
     for (const auto& plugin : d.plugins)
-        for (const rsl::Shadeop& f : plugin->functions)
-            for (const rsl::Signature& s : f.signatures)
+        for (const shadeops::Shadeop& f : plugin->functions)
+            for (const shadeops::Signature& s : f.signatures)
                 t += "plug-in \"" + plugin->name + "\": " + s.text + (f.doc.empty() ? "" : "  " + f.doc) + "\n";
     for (const auto& [key, value] : d.annotations) t += "annotation " + key + ": " + value + "\n";
     for (const auto& k : d.kinds) {

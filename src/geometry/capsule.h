@@ -19,10 +19,10 @@ struct Capsule {
     /// Whether a ray may pass through. Never false for one that does. slack: how far its origin may be off.
     bool mayPass(const Vec3& org, const Vec3& dir, float slack = 0) const {
         const float dd = dot(dir, dir), inverse = 1 / dd;
-        const Vec3 w = a - org, across = w - dir * (dot(w, dir) * inverse), beside = along - dir * (dot(along, dir) * inverse);
+        const Vec3 w = a - org, across = w - dir * (dot(w, dir) * inverse), sideways = along - dir * (dot(along, dir) * inverse);
         // NaN gives an end.
-        const float s = std::min(1.f, std::max(0.f, -dot(across, beside) / dot(beside, beside)));
-        const Vec3 nearest = across + beside * s;
+        const float s = std::min(1.f, std::max(0.f, -dot(across, sideways) / dot(sideways, sideways)));
+        const Vec3 nearest = across + sideways * s;
         const auto norm = [](const Vec3& v) { return std::fabs(v.x) + std::fabs(v.y) + std::fabs(v.z); };
         const float reach = radius + 0x1p-19f * (norm(w) + norm(along)) + 2 * slack;
         return !(dd > 1e-30f) || !(dot(nearest, nearest) > reach * reach + excess);

@@ -22,14 +22,14 @@ static Color measuredAlbedo(const BlockLobes& s, const PathRay& ray, size_t poin
     alignas(64) Row lobe[kLobeRows];
     alignas(64) float drawn[kDrawnRows][kBlock], value[kValueRows][kBlock];
     for (int r = 0; r < kLobeRows; ++r) std::fill_n(lobe[r], kBlock, l.lobe[r][i]);
-    render::NumberBlock n;
+    NumberBlock n;
     for (int k = 0; k < kBlock; ++k) {
-        const render::SampleNumbers of = ray.sample->numbers.draw(uint32_t(k % kDraws), kAlbedoDraws);
+        const SampleNumbers of = ray.sample->numbers.draw(uint32_t(k % kDraws), kAlbedoDraws);
         n.low[k] = of.low(), n.high[k] = of.high(), n.index[k] = of.index(), n.vertex[k] = ray.vertex;
     }
     std::fill_n(n.stream, kBlock, kAlbedo << 1);
     std::fill_n(n.occurrence, kBlock, uint32_t(s.number) * 4096 + s.occurrenceAt(point));
-    render::drawBlocks({&n, 1});
+    drawBlocks({&n, 1});
     s.lanes->sample(lobe[0], all, n.x, drawn[0]);
     s.lanes->evaluate(lobe[0], all, drawn[kRowDirection], value[0]);
     Color sum(0);

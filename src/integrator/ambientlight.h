@@ -29,7 +29,7 @@ public:
 private:
     void draw(const BatchContext&, std::vector<AmbientAsked>& calls);
     void send(const BatchContext&, const AmbientAsked&, const Color& light, int number, int& last);
-    render::NumberRows numbers_;
+    NumberRows numbers_;
     std::vector<int> litBy_; ///< RayExtra::lit, by query of a light
     Accumulator& accumulator_;
     LightKernels& lightKernels_;

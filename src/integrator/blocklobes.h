@@ -68,7 +68,7 @@ struct BlockLobes {
     /// Turns pdf toward w from the density of the lobes alone into the mixture density. pointOf: by lane, index in the batch.
     void addLightDirected(Lanes, const Row* w, const size_t* pointOf, float* pdf) const;
     /// Samples directions by u, some of them toward lights, and writes kDrawnRows rows to `drawn`.
-    void draw(size_t block, Lanes, render::NumberBlock& u, Row* drawn) const;
+    void draw(size_t block, Lanes, NumberBlock& u, Row* drawn) const;
 };
 
 /// A light sample for a point in a medium, and the value of the phase function there.

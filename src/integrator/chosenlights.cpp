@@ -82,7 +82,7 @@ void LightSampling::ChosenLights::ask(const BoundKernel* group, bool rows, std::
 
 /// Chooses the lights of each point, as indices in the list.
 void LightSampling::ChosenLights::choose(const WorldImpl::LightList& list) {
-    v_.drawNumbers(kChooseLight << 1 | render::SampleNumbers::kSingle, v_.choices);
+    v_.drawNumbers(kChooseLight << 1 | SampleNumbers::kSingle, v_.choices);
     chosen_.clear();
     const std::vector<int>& on = world_.sampledOf(list);
     begin_.assign(on.size() + 1, 0);
@@ -208,7 +208,7 @@ void LightSampling::ChosenLights::gatherPoints(std::span<const Asked> asked) {
         q.lights.asked = q.lights.metDiffuse = q.lights.metSpecular = 0;
         std::fill_n(q.says, kBlock, -1);
         VertexBlock& to = q.points;
-        render::NumberBlock& numbers = pairs_[k];
+        NumberBlock& numbers = pairs_[k];
         for (size_t i = 0; i < size_t(kBlock); ++i) {
             const Asked& a = asked[first + std::min(i, n - 1)];
             q.asked[i] = &a;
@@ -266,13 +266,13 @@ void LightSampling::ChosenLights::drawNumbers() {
         for (const Asked* a : blocks_[k].asked) choices |= takesChoice(world_.lights_[size_t(a->light)]);
     if (choices) {
         choices_ = pairs_;
-        for (render::NumberBlock& n : choices_)
-            for (uint32_t& stream : n.stream) stream |= render::SampleNumbers::kSingle;
-        render::drawBlocks(choices_);
+        for (NumberBlock& n : choices_)
+            for (uint32_t& stream : n.stream) stream |= SampleNumbers::kSingle;
+        drawBlocks(choices_);
     } else {
         choices_.clear();
     }
-    render::drawBlocks(pairs_);
+    drawBlocks(pairs_);
 }
 
 void LightSampling::ChosenLights::placeOnEmitters(size_t k) {

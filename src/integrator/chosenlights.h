@@ -60,7 +60,7 @@ private:
     std::vector<size_t> begin_; ///< by index in the list: first in sorted_
     std::vector<Questions> blocks_;
     size_t count_ = 0; ///< used in blocks_
-    std::vector<render::NumberBlock> pairs_, choices_;
+    std::vector<NumberBlock> pairs_, choices_;
     std::vector<float> lamp_; ///< shading::LightRows
     std::vector<shading::InstanceView> views_;
     std::vector<uint32_t> viewOf_;

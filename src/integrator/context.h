@@ -30,7 +30,7 @@ struct Context {
     const std::shared_ptr<const WorldImpl> frame; ///< keeps the world alive
     const WorldImpl& world;
     Diagnostics& diagnostics;
-    const render::SeedKey seed;
+    const SeedKey seed;
     const int32_t totalReflection; ///< the label of rays that Counters::totalReflected counts
     Rules rules;
     Counters counters;

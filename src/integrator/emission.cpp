@@ -93,10 +93,10 @@ bool EmissionPlan::findPlace(LightKernels& lights, Light& l) {
 /// Estimates the power of a light, and which side of an emitter it leaves. Uses a sequence that no photon uses.
 void EmissionPlan::measure(LightKernels& lights, Light& l) {
     std::vector<EmissionStart> starts;
-    const render::Sampler numbers(0x6d656173757265ull, l.number & 0xffffff, l.number >> 24);
+    const Sampler numbers(0x6d656173757265ull, l.number & 0xffffff, l.number >> 24);
     const bool area = l.light->kind == LightKind::Area && !l.light->mean && !l.light->photons;
     for (uint32_t k = 0; k < kProbes; ++k) {
-        EmissionDraw d = draw(render::SampleNumbers(numbers, k));
+        EmissionDraw d = draw(SampleNumbers(numbers, k));
         d.light = 0;
         d.chance = d.density = 1;
         starts.push_back({d});
@@ -129,7 +129,7 @@ void EmissionPlan::share() {
     }
 }
 
-EmissionDraw EmissionPlan::draw(const render::SampleNumbers& n) const {
+EmissionDraw EmissionPlan::draw(const SampleNumbers& n) const {
     EmissionDraw d;
     d.numbers = n;
     if (!lights_.empty()) {

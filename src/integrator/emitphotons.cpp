@@ -16,7 +16,7 @@ namespace alpenglow::integrator {
 namespace {
 
 /// Random number that selects the level of detail for all hits of a photon.
-float levelOf(const render::SampleNumbers& n) { return Random(n).one(0, kLevel, 0); }
+float levelOf(const SampleNumbers& n) { return Random(n).one(0, kLevel, 0); }
 
 /// Starts the photons of a block, light by light, because a kernel call is for one light.
 std::vector<EmissionStart> startBlock(const StageSet& set, const PhotonJob& job, uint32_t first, uint32_t count,

@@ -152,8 +152,7 @@ CameraRay GridShading::rayTo(const MicropolygonShare& s, const geometry::Surface
     point = {s.key.shape, s.key.prim, s.b1, s.b2};
     point.corner = false;
     point.micropolygon = key.hash();
-    if (!key.shared())
-        point.micropolygon += render::mix64(std::bit_cast<uint64_t>(s.b1)) + 3 * render::mix64(std::bit_cast<uint64_t>(s.b2));
+    if (!key.shared()) point.micropolygon += mix64(std::bit_cast<uint64_t>(s.b1)) + 3 * mix64(std::bit_cast<uint64_t>(s.b2));
     const Vec3 P = p.displaced ? p.displacedP : p.P;
     CameraRay r;
     r.direction = camera_.towards(P);

@@ -28,14 +28,14 @@ GuideRays::Aim GuideRays::aimAt(const Vec3& P, const Vec3& n, const Vec3& in, fl
 }
 
 /// A uniform number for a ray's vertex by hash; its tenths are equidistributed over the samples of a pixel.
-static double hashOf(const render::SampleNumbers& n, const PathRay& from, uint64_t use) {
-    const uint64_t key = (uint64_t(n.high()) << 32 | n.low()) ^ render::mix64(uint64_t(from.vertex) << 32 | n.index());
-    return double(render::mix64(key ^ use) >> 11) * 0x1p-53;
+static double hashOf(const SampleNumbers& n, const PathRay& from, uint64_t use) {
+    const uint64_t key = (uint64_t(n.high()) << 32 | n.low()) ^ mix64(uint64_t(from.vertex) << 32 | n.index());
+    return double(mix64(key ^ use) >> 11) * 0x1p-53;
 }
 
 bool GuideRays::draws(const PathRay& from, const Aim& a, const Vec3& P, Vec3& w) const {
     if (!a.code) return false;
-    const render::SampleNumbers& numbers = store_.random(from).numbers();
+    const SampleNumbers& numbers = store_.random(from).numbers();
     if (a.code > 1 && hashOf(numbers, from, kGuideRay) >= double(CausticGuide::chanceOf(a.code))) return false;
     w = guide()->draw(*a.cell, P, Random(numbers).pair(from.vertex, kGuideRay, 0));
     return true;

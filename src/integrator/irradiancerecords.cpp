@@ -23,7 +23,7 @@ namespace {
 
 constexpr float kPixels = 20; ///< default of "maxpixeldist"
 
-uint64_t mixed(uint64_t h, float v) { return render::mix64(h ^ std::bit_cast<uint32_t>(v)); }
+uint64_t mixed(uint64_t h, float v) { return mix64(h ^ std::bit_cast<uint32_t>(v)); }
 
 /// Whether the cone is the whole hemisphere: records hold no other kind.
 bool wholeHemisphere(float cone) { return std::fabs(cone - float(kPi / 2)) < 1e-4f; }
@@ -51,11 +51,11 @@ std::optional<Color> IrradianceRecords::recorded(const BatchContext& c, const Si
     record.N = record.N / l;
     const float far = std::min(number(r.maxDistance, 1e38f), number(r.maxHit, 1e38f)), reach = far >= 0 ? far : 1e38f;
     n.fade = {std::max(0.f, number(fade.strength, 0)), reach, number(fade.mode, 0) != 0};
-    record.call = mixed(mixed(render::mix64(site.call + uint64_t(b.group)), reach), n.fade.strength);
+    record.call = mixed(mixed(mix64(site.call + uint64_t(b.group)), reach), n.fade.strength);
     record.call = mixed(record.call, float(n.fade.polynomial));
     // The same rays, the same surfaces, and behind them the same sky.
     // Owned by the world, equal for all threads
-    record.call = render::mix64(record.call ^ reinterpret_cast<uintptr_t>(kind->set.only));
+    record.call = mix64(record.call ^ reinterpret_cast<uintptr_t>(kind->set.only));
     record.call = mixed(mixed(record.call, float(kind->set.sides)), float(kind->set.mode));
     record.call = mixed(record.call, float(kind->type));
     if (!s.occlusion && s.trace->map) {

@@ -12,7 +12,7 @@ namespace {
 // Callbacks of generated code: C functions that find their stage through KernelCall::user.
 BatchContext& contextOf(rsl::KernelCall* c) { return *static_cast<BatchContext*>(c->user); }
 
-/// Exceptions cannot pass through generated code: an exception in a callback is stored, the kernel is told to leave its loops,
+/// Exceptions cannot pass through generated code: an exception in a callback is stored, the kernel is asked to leave its loops,
 /// and the caller of the kernel rethrows (BatchContext::ran). Until then callbacks do nothing.
 constexpr StopFlag kEnd{1};
 void failed(rsl::KernelCall* call) noexcept {

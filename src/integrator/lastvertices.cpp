@@ -27,12 +27,12 @@ void LastVertices::endLobe(const Site& s, size_t b, const BatchContext& c) {
     const VertexBlock& v = v_.vertices[b];
     const LobeBlock& l = s.lobes[b];
     Lanes some = l.ended & l.lights & v.points;
-    render::NumberBlock n;
+    NumberBlock n;
     v_.beginNumbers(b, n);
     std::fill_n(n.stream, kBlock, uint32_t(s.number) << 1);
     for (size_t i = 0; i < size_t(kBlock) && b * kBlock + i < v_.points; ++i)
         n.occurrence[i] = s.occurrenceAt(b * kBlock + i) * 4096;
-    render::drawBlocks({&n, 1});
+    drawBlocks({&n, 1});
     s.draw(b, some, n, v_.drawn);
     single_.drawAgain(s, b, some);
     for (int i = 0; i < kBlock; ++i)

@@ -58,7 +58,7 @@ void BlockLobes::addLightDirected(Lanes some, const Row* w, const size_t* pointO
     }
 }
 
-void BlockLobes::draw(size_t b, Lanes some, render::NumberBlock& u, Row* drawn) const {
+void BlockLobes::draw(size_t b, Lanes some, NumberBlock& u, Row* drawn) const {
     Vec3 directions[kBlock];
     Lanes aside = 0;
     for (Lanes left = lightDirected.empty() ? 0 : some; left; left &= left - 1) {

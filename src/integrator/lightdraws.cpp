@@ -53,12 +53,12 @@ void LightSampling::lightAlone(const BoundLight& light, BatchContext& c, Sched& 
 }
 
 /// Draws the numbers of a light's samples at all points, of one stream.
-void LightSampling::drawOf(const BoundLight& light, uint32_t stream, std::vector<render::NumberBlock>& to) const {
+void LightSampling::drawOf(const BoundLight& light, uint32_t stream, std::vector<NumberBlock>& to) const {
     const bool placed = light.kind == LightKind::Area || light.isSky(); // waiting kernels draw these anew for each call
     if (!v_.several) return v_.drawNumbers(stream, to, placed);
     to.resize(v_.blocks);
     for (size_t b = 0; b < v_.blocks; ++b) {
-        render::NumberBlock& n = to[b];
+        NumberBlock& n = to[b];
         v_.beginNumbers(b, n);
         if (placed) std::copy_n(v_.vertices[b].lightVertex, kBlock, n.vertex);
         std::fill_n(n.stream, kBlock, stream);
@@ -67,12 +67,12 @@ void LightSampling::drawOf(const BoundLight& light, uint32_t stream, std::vector
             nameDraw(v_.rays[b], i, uint32_t(drawsOf(light, b * kBlock + size_t(i))), n, i);
         }
     }
-    render::drawBlocks(to);
+    drawBlocks(to);
 }
 
 /// Sets the keys of lane `to` for the current one of `draws` samples of a ray.
-void LightSampling::nameDraw(const RayBlock& rays, int lane, uint32_t draws, render::NumberBlock& n, int to) const {
-    const render::SampleNumbers of = v_.sampleOf(rays, lane).numbers.draw(v_.draw, draws);
+void LightSampling::nameDraw(const RayBlock& rays, int lane, uint32_t draws, NumberBlock& n, int to) const {
+    const SampleNumbers of = v_.sampleOf(rays, lane).numbers.draw(v_.draw, draws);
     n.low[to] = of.low(), n.high[to] = of.high(), n.index[to] = of.index();
 }
 

@@ -57,7 +57,7 @@ void LightSampling::placeInRows(const BoundLight& light, const LightGuide* guide
     if (light.kind == LightKind::Area) {
         const uint32_t use = kLightPoint + v_.numberOf(light);
         drawOf(light, use << 1, v_.pairs);
-        if (takesChoice(light)) drawOf(light, use << 1 | render::SampleNumbers::kSingle, v_.choices);
+        if (takesChoice(light)) drawOf(light, use << 1 | SampleNumbers::kSingle, v_.choices);
     } else {
         const Vec3 origin = originOfLight(*light.instance, 0);
         for (size_t q = 0; q < 3; ++q) std::fill_n(lamp_.data() + q * n, n, origin[int(q)]);

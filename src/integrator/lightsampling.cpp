@@ -133,7 +133,7 @@ void LightSampling::sampleLight(const BoundLight& light, BatchContext& c) {
     const uint32_t use = kLightPoint + v_.numberOf(light);
     const bool pair = takesPair(light, rules_.pickOne);
     if (pair) drawOf(light, use << 1, v_.pairs);
-    if (takesChoice(light)) drawOf(light, use << 1 | render::SampleNumbers::kSingle, v_.choices);
+    if (takesChoice(light)) drawOf(light, use << 1 | SampleNumbers::kSingle, v_.choices);
     const LightGuide* const guide = c.between || !rules_.pickOne ? nullptr : guideOf(world_, light);
     v_.asked.clear();
     surfaces_.pointsOfRows(c);

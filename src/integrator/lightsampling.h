@@ -62,8 +62,8 @@ private:
     bool drawsSeveral() const;
     int drawsOf(const BoundLight&, size_t point) const;
     bool lightsAt(const Site&, const BoundLight&, size_t point) const;
-    void drawOf(const BoundLight&, uint32_t stream, std::vector<render::NumberBlock>&) const;
-    void nameDraw(const RayBlock&, int lane, uint32_t draws, render::NumberBlock&, int to) const;
+    void drawOf(const BoundLight&, uint32_t stream, std::vector<NumberBlock>&) const;
+    void nameDraw(const RayBlock&, int lane, uint32_t draws, NumberBlock&, int to) const;
     bool checksHits(const BoundLight&) const;
     // lightrows.cpp
     bool inRows(const BoundLight&, const BoundKernel&) const;

@@ -85,7 +85,7 @@ private:
     void glow(const RaySegment&, const Homogeneous&, Sched&);
     class NearLight;
     std::vector<Crossing> crossings_;
-    render::NumberRows numbers_;
+    NumberRows numbers_;
     std::vector<Vec3> lights_;
     Accumulator& accumulator_;
     Atmosphere& atmosphere_;

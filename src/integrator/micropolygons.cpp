@@ -45,7 +45,7 @@ uint16_t cellOf(double b, int n) { return uint16_t(std::clamp(int(b * n), 0, n -
 uint64_t MicropolygonKey::hash() const {
     const uint64_t a = uint64_t(shape) << 32 | prim,
                    b = uint64_t(steps[0]) << 48 | uint64_t(steps[1]) << 32 | uint64_t(at[0]) << 16 | at[1];
-    return render::mix64(a ^ render::mix64(b + (corner ? 0x9e3779b97f4a7c15ull : 0)));
+    return mix64(a ^ mix64(b + (corner ? 0x9e3779b97f4a7c15ull : 0)));
 }
 
 MicropolygonCamera::MicropolygonCamera(const scene::Options& o) {

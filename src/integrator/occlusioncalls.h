@@ -43,7 +43,7 @@ private:
     int fewer(const OcclusionSite&, const std::function<float(int)>& row, int count, const BatchContext&) const;
     bool agree(std::vector<ShadowRay>&, size_t begin, HemisphereRays&, const Color& weight);
     FlippedNormals::Tally* tallyOf(const BatchContext&, const SiteInfo&, const ShadePoint&, const Vec3& normal);
-    render::NumberRows numbers_; ///< for the rays of one call
+    NumberRows numbers_; ///< for the rays of one call
     std::unordered_map<const scene::Attributes*, OfShape> ofShapes_;
     std::map<std::pair<const SiteInfo*, const geometry::Shape*>, FlippedNormals::Tally*> tallies_;
     Accumulator& accumulator_;

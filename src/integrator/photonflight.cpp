@@ -161,7 +161,7 @@ bool PhotonFlight::follows(const Site& s, size_t point, const BatchContext& c) c
 /// Picks the lobe of each point that a photon follows, and samples its direction.
 void PhotonFlight::pick(BatchContext& c) {
     const bool chooses = !c.between && (v_.count > 1 || !c.clear.empty()); // in a medium each point has one lobe
-    if (chooses) v_.drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, v_.choices, false);
+    if (chooses) v_.drawNumbers(kChooseLobe << 1 | SampleNumbers::kSingle, v_.choices, false);
     v_.pairs.resize(1);
     v_.turn = 0;
     picked_.resize(std::max(picked_.size(), v_.blocks));

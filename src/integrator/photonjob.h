@@ -16,8 +16,8 @@ struct EmissionDraw {
     float chance = 0;      ///< probability of choosing this light
     Vec2 place, way, cone; ///< uniform in the unit square; `way` is warped by the guide
     float choose = 0, side = 0, time = 0;
-    float density = 1;                                          ///< density of `way`
-    render::SampleNumbers numbers{render::Sampler(0, 0, 0), 0}; ///< the photon's own generator, for random() in shaders
+    float density = 1;                          ///< density of `way`
+    SampleNumbers numbers{Sampler(0, 0, 0), 0}; ///< the photon's own generator, for random() in shaders
 };
 
 /// Which lights emit photons, and the share of each: in proportion to power, or to the power that was found to arrive.
@@ -51,7 +51,7 @@ public:
     std::vector<uint8_t> met(bool both) const;
 
     /// The random numbers of the photon with this generator.
-    EmissionDraw draw(const render::SampleNumbers&) const;
+    EmissionDraw draw(const SampleNumbers&) const;
     /// Adapts the plan to the stored photons of an emission of `emitted` photons: later emissions send more where these went.
     void learn(std::span<const StoredPhoton>, const PhotonJob&, uint32_t emitted);
 
@@ -78,8 +78,8 @@ struct PhotonJob {
     double scale = 1;      ///< factor of photon power: one over the number of emitted photons
     bool models = true;    ///< Attribute "photon" "shadingmodel" counts
     float width = 0;       ///< caustics: lobes with a smaller spread, in radians, count as mirrors
-    render::SampleNumbers numbers(uint32_t photon) const {
-        return {render::Sampler(render::SeedKey(seed ^ 0x70686f746f6e7331ull), int(pass >> 24), int(pass & 0xffffffu)), photon};
+    SampleNumbers numbers(uint32_t photon) const {
+        return {Sampler(SeedKey(seed ^ 0x70686f746f6e7331ull), int(pass >> 24), int(pass & 0xffffffu)), photon};
     }
 };
 

@@ -70,7 +70,7 @@ int PhotonStage::lobesOfModel(PhotonModel model, const ShadePoint& p, const Colo
     if (model == PhotonModel::Chrome) to[count++] = {mirror, mirrored, Cs, &kSpecularKind};
     if (model == PhotonModel::Plastic) { // as in the shader of that name
         to[count++] = {diffuse, N, Cs * .5f, &kDiffuseKind};
-        to[count++] = {specular, N, Color(.5f), &kSpecularKind, kSpecularExponent / .1f};
+        to[count++] = {specular, N, Color(.5f), &kSpecularKind, shadeops::kSpecularExponent / .1f};
     }
     if (model == PhotonModel::Glass || model == PhotonModel::Water) {
         const float eta = model == PhotonModel::Glass ? 1.5f : 1.33f;

@@ -154,7 +154,7 @@ void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     PathSample& sample = parts_->store.samples[i];
     sample = {c.px,   c.py,      c.sample,
               int(i), c.time,    c.shutter,
-              0.5f,   c.records, render::SampleNumbers(render::Sampler(parts_->context.seed, c.px, c.py), c.sample),
+              0.5f,   c.records, SampleNumbers(Sampler(parts_->context.seed, c.px, c.py), c.sample),
               c.grid};
     r.sample = &sample;
     r.footprint = {c.width, c.spread};
@@ -163,7 +163,7 @@ void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     if (c.grid && c.grid->micropolygon) {
         // Sign-extends, as for pixels
         const auto half = [&](int shift) { return int(c.grid->micropolygon >> shift & 0x3fffffff) - (1 << 29); };
-        sample.numbers = render::SampleNumbers(render::Sampler(parts_->context.seed, half(0), half(32)), c.sample);
+        sample.numbers = SampleNumbers(Sampler(parts_->context.seed, half(0), half(32)), c.sample);
     }
     if (w.fades_) sample.level = parts_->store.levelOf(c);
     r.counts = true;

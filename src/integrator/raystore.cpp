@@ -9,9 +9,7 @@
 
 namespace alpenglow::integrator {
 
-RayStore::RayStore(const StageSet& s) : Stage(s.context) {
-    noSample.numbers = render::SampleNumbers(render::Sampler(context_.seed, 0, 0), 0);
-}
+RayStore::RayStore(const StageSet& s) : Stage(s.context) { noSample.numbers = SampleNumbers(Sampler(context_.seed, 0, 0), 0); }
 
 using shading::RaySet;
 
@@ -45,7 +43,7 @@ RaySet RayStore::raySetOf(const SiteInfo& s, const std::function<float(int)>& f,
 }
 
 float RayStore::levelOf(const CameraRay& c) const {
-    return Random(render::SampleNumbers(render::Sampler(context_.seed, c.px, c.py), c.sample)).one(0, kLevel, 0);
+    return Random(SampleNumbers(Sampler(context_.seed, c.px, c.py), c.sample)).one(0, kLevel, 0);
 }
 
 /// Attenuates a ray by distance if its call requests it ("falloff").
@@ -73,7 +71,7 @@ const RayKind* RayStore::kindOf(const RayKind& k) {
     if (lastKind_ && *lastKind_ == k) return lastKind_;
     const uint64_t what = uint64_t(uint32_t(k.label)) << 32 | uint64_t(k.type) << 16 | uint64_t(k.fromTrace) << 12 |
                           uint64_t(k.set.sides) << 8 | uint64_t(k.set.mode);
-    std::deque<RayKind>& known = kinds_[render::mix64(what ^ render::mix64(reinterpret_cast<uintptr_t>(k.set.only)))];
+    std::deque<RayKind>& known = kinds_[mix64(what ^ mix64(reinterpret_cast<uintptr_t>(k.set.only)))];
     auto found = std::find(known.begin(), known.end(), k);
     if (found == known.end()) found = known.insert(known.end(), k);
     return lastKind_ = &*found;

@@ -122,7 +122,7 @@ template <class Row> const LobeKind* Requests::lobeOf(const BatchContext& c, con
     if (!fresh) return known->second;
     const std::string& name = rsl::internedString(id);
     if (name.empty()) return s.lobe;
-    if (rsl::isDistribution(name, true)) return known->second = findLobe(name);
+    if (shadeops::isDistribution(name, true)) return known->second = findLobe(name);
     const auto& files = c.bound->kernel->files();
     const auto& at = s.site->place;
     const SourcePlace place{size_t(at.file) < files.size() ? files[size_t(at.file)] : "", at.line, at.column};
@@ -130,8 +130,8 @@ template <class Row> const LobeKind* Requests::lobeOf(const BatchContext& c, con
                             {Severity::Error,
                              Rie::BadToken,
                              place,
-                             rsl::noDistribution(s.site->op, name) + "; the call returns no light",
-                             rsl::knownDistributions(),
+                             shadeops::noDistribution(s.site->op, name) + "; the call returns no light",
+                             shadeops::knownDistributions(),
                              {}});
     return known->second = nullptr;
 }

@@ -36,7 +36,7 @@ void ScatterRays::run(BatchContext& c, Sched& sched) {
         return;
     }
     const bool chooses = !c.between && (v_.count > 1 || !c.clear.empty()); // in a medium each point has one lobe
-    if (chooses) v_.drawNumbers(kChooseLobe << 1 | render::SampleNumbers::kSingle, v_.choices, false);
+    if (chooses) v_.drawNumbers(kChooseLobe << 1 | SampleNumbers::kSingle, v_.choices, false);
     v_.pairs.resize(1);
     for (size_t b = 0; b < v_.blocks; ++b) {
         stages_.pick(v_.vertices[b], v_.lobesOf(b).data(), int(v_.count), chooses ? v_.choices[b].x : v_.whole, v_.next);
@@ -81,7 +81,7 @@ static Lanes pickedOf(const ScatterBlock& s, int site) {
 void ScatterRays::drawDirections(size_t b) {
     size_t points[kBlock];
     std::iota(points, points + kBlock, b * kBlock);
-    render::NumberBlock& n = v_.pairs[0];
+    NumberBlock& n = v_.pairs[0];
     v_.beginNumbers(b, n);
     for (int i = 0; i < kBlock; ++i) {
         n.stream[i] = 0;
@@ -91,10 +91,10 @@ void ScatterRays::drawDirections(size_t b) {
         n.occurrence[i] = s.occurrenceAt(b * kBlock + size_t(i)) * 4096;
         const auto samples = uint32_t(rules_.pickOne && !v_.waits ? 1 : s.samplesAt(b * kBlock + size_t(i)));
         if (samples == 1) continue;
-        const render::SampleNumbers of = v_.sampleOf(v_.rays[b], i).numbers.draw(v_.turn, samples);
+        const SampleNumbers of = v_.sampleOf(v_.rays[b], i).numbers.draw(v_.turn, samples);
         n.low[i] = of.low(), n.high[i] = of.high(), n.index[i] = of.index();
     }
-    render::drawBlocks(std::span(v_.pairs).first(1));
+    drawBlocks(std::span(v_.pairs).first(1));
     v_.idle = 0;
     for (size_t k = 0; k < v_.count; ++k) {
         const Lanes picked = pickedOf(v_.next, int(k));
@@ -134,12 +134,12 @@ void ScatterRays::throwDice(size_t b) {
         std::fill_n(v_.next.dice, kBlock, 0.f);
         return;
     }
-    render::NumberBlock& n = v_.pairs[0];
+    NumberBlock& n = v_.pairs[0];
     if (v_.sendsSeveral) v_.beginNumbers(b, n); // directions had numbers of their own for each ray
     std::copy_n(v_.next.vertex, kBlock, n.vertex);
-    std::fill_n(n.stream, kBlock, kRoulette << 1 | render::SampleNumbers::kSingle);
+    std::fill_n(n.stream, kBlock, kRoulette << 1 | SampleNumbers::kSingle);
     std::fill_n(n.occurrence, kBlock, 0u);
-    render::drawBlocks(std::span(v_.pairs).first(1));
+    drawBlocks(std::span(v_.pairs).first(1));
     std::copy_n(n.x, kBlock, v_.next.dice);
 }
 

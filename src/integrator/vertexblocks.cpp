@@ -28,7 +28,7 @@ std::span<LobeBlock*> VertexBlocks::lobesOf(size_t b) {
     return block_;
 }
 
-void VertexBlocks::beginNumbers(size_t b, render::NumberBlock& n) const {
+void VertexBlocks::beginNumbers(size_t b, NumberBlock& n) const {
     const VertexBlock& v = vertices[b];
     std::copy_n(v.low, kBlock, n.low);
     std::copy_n(v.high, kBlock, n.high);
@@ -37,14 +37,14 @@ void VertexBlocks::beginNumbers(size_t b, render::NumberBlock& n) const {
     std::fill_n(n.occurrence, kBlock, 0u);
 }
 
-void VertexBlocks::drawNumbers(uint32_t stream, std::vector<render::NumberBlock>& to, bool ofLights) const {
+void VertexBlocks::drawNumbers(uint32_t stream, std::vector<NumberBlock>& to, bool ofLights) const {
     to.resize(blocks);
     for (size_t b = 0; b < blocks; ++b) {
         beginNumbers(b, to[b]);
         if (ofLights) std::copy_n(vertices[b].lightVertex, kBlock, to[b].vertex);
         std::fill_n(to[b].stream, kBlock, stream);
     }
-    render::drawBlocks(to);
+    drawBlocks(to);
 }
 
 /// Origin of a ray of a lobe in direction w.

@@ -32,9 +32,9 @@ struct VertexBlocks final : Stage {
         return r ? r->indirect : indirect.empty() ? 1 : indirect[point];
     }
     /// Sets the keys of the points of a block; the stream is still to be set.
-    void beginNumbers(size_t block, render::NumberBlock&) const;
+    void beginNumbers(size_t block, NumberBlock&) const;
     /// Draws the random numbers of a stream (NumberBlock) at all points.
-    void drawNumbers(uint32_t stream, std::vector<render::NumberBlock>&, bool ofLights = true) const;
+    void drawNumbers(uint32_t stream, std::vector<NumberBlock>&, bool ofLights = true) const;
     /// Origin of a ray of a lobe in direction w.
     Vec3 originOf(const Site&, size_t point, const Vec3& w) const;
     /// RayExtra::share of light that a lobe reflects at the hit of a ray.
@@ -78,7 +78,7 @@ struct VertexBlocks final : Stage {
     std::vector<LightValue> values; ///< by query
     std::vector<int32_t> queryAt;   ///< by point: index in `values`; -1, or empty: `lights` holds all
     std::vector<size_t> litBlocks;  ///< blocks with points that sample it
-    std::vector<render::NumberBlock> pairs, choices;
+    std::vector<NumberBlock> pairs, choices;
     // By Connection.
     ShadowBlock shadow{};
     int32_t sent[kBlock]; ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent

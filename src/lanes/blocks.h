@@ -24,7 +24,7 @@ struct alignas(64) VertexBlock {
     Row energyScale; ///< by select(): factor of indirect light for lighting shadeops (energy rule); 1 if reflectance is at most 1
     Row passes;      ///< by select() and pick(): probability of continuing behind the point; 1: in addition to lobes
     int32_t bounces[kBlock];
-    uint32_t low[kBlock], high[kBlock], index[kBlock], vertex[kBlock]; ///< keys of random numbers: render::NumberBlock
+    uint32_t low[kBlock], high[kBlock], index[kBlock], vertex[kBlock]; ///< keys of random numbers: NumberBlock
     uint32_t lightVertex[kBlock];                                      ///< replaces `vertex` for light samples
     Lanes points = 0;
     Lanes guided = 0;       ///< points of guide rays: only mirrors are followed

@@ -5,7 +5,7 @@
 #include "shadeops/lanes.h"
 
 namespace alpenglow::lanes::AL_NAMESPACE {
-using namespace rsl::AL_NAMESPACE;
+using namespace shadeops::AL_NAMESPACE;
 
 inline constexpr int kW = ALPENGLOW_LANES;
 typedef double vd __attribute__((ext_vector_type(ALPENGLOW_LANES)));

@@ -44,12 +44,12 @@ std::optional<Model> received(const ChildResult& child, const std::string& path,
     }
     bytes = {};
     check(*m);
-    int told = 0;
+    int count = 0;
     for (const Note& n : m->notes)
-        if (told++ < limits::kModelMessages)
+        if (count++ < limits::kModelMessages)
             d.report(n.error ? Severity::Error : Severity::Warning, n.error ? Rie::Range : Rie::Incapable, {path, 0, 0}, n.text);
-    if (told > limits::kModelMessages)
-        d.report(Severity::Warning, Rie::Limit, {path, 0, 0}, fmt::format("{} more notes", told - limits::kModelMessages));
+    if (count > limits::kModelMessages)
+        d.report(Severity::Warning, Rie::Limit, {path, 0, 0}, fmt::format("{} more notes", count - limits::kModelMessages));
     return m;
 }
 

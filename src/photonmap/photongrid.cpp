@@ -29,8 +29,8 @@ PhotonGrid::PhotonGrid(std::vector<Photon> photons, float radius, std::span<cons
 }
 
 uint32_t PhotonGrid::bucketOf(int64_t x, int64_t y, int64_t z) const {
-    return uint32_t(render::mix64(uint64_t(x) * 0x9e3779b97f4a7c15ull + uint64_t(y) * 0xc2b2ae3d27d4eb4full +
-                                  uint64_t(z) * 0x165667b19e3779f9ull)) &
+    return uint32_t(mix64(uint64_t(x) * 0x9e3779b97f4a7c15ull + uint64_t(y) * 0xc2b2ae3d27d4eb4full +
+                          uint64_t(z) * 0x165667b19e3779f9ull)) &
            mask_;
 }
 

@@ -60,7 +60,7 @@ void MemoryWatcher::look(const render::Glance& g) {
 
 void MemoryWatcher::progress(const render::ProgressState& s, const std::string& what) {
     const std::lock_guard lock(mutex_);
-    told_ = Told{s, what};
+    latest_ = Progress{s, what};
 }
 
 void MemoryWatcher::finished(std::unique_ptr<render::Film> film) {
@@ -105,9 +105,9 @@ std::optional<KeptPicture> MemoryWatcher::grown() {
 
 std::vector<KeptPicture> MemoryWatcher::take() { return std::exchange(kept_, {}); }
 
-std::optional<MemoryWatcher::Told> MemoryWatcher::told() {
+std::optional<MemoryWatcher::Progress> MemoryWatcher::latest() {
     const std::lock_guard lock(mutex_);
-    return std::exchange(told_, std::nullopt);
+    return std::exchange(latest_, std::nullopt);
 }
 
 } // namespace alpenglow::python

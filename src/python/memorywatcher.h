@@ -41,12 +41,12 @@ public:
     std::vector<KeptPicture> take();
     /// The first picture of the frame as it is by now, if it has grown since the last call. Any thread.
     std::optional<KeptPicture> grown();
-    struct Told {
+    struct Progress {
         render::ProgressState state;
         std::string what;
     };
     /// The latest progress, if there is any since the last call. Any thread.
-    std::optional<Told> told();
+    std::optional<Progress> latest();
 
 private:
     using Pixels = std::function<render::Image(const render::OutputSpec&)>;
@@ -63,7 +63,7 @@ private:
     double last_ = 0, cost_ = 0; ///< when the growing picture was last looked at, and how long that took, seconds
     std::vector<KeptPicture> kept_, partial_;
     std::mutex mutex_;
-    std::optional<Told> told_;
+    std::optional<Progress> latest_;
     std::optional<KeptPicture> grown_;
 };
 

@@ -31,7 +31,7 @@ py::list pictureList(std::vector<KeptPicture> pictures) {
     return all;
 }
 
-py::dict progressDict(const MemoryWatcher::Told& t) {
+py::dict progressDict(const MemoryWatcher::Progress& t) {
     py::dict d;
     d["fraction"] = t.state.fraction;
     d["samples"] = t.state.samplesDone;

@@ -11,6 +11,6 @@ py::dict pictureDict(KeptPicture);
 py::list pictureList(std::vector<KeptPicture>);
 
 /// fraction, samples, total, noise, rays_per_ms, what.
-py::dict progressDict(const MemoryWatcher::Told&);
+py::dict progressDict(const MemoryWatcher::Progress&);
 
 } // namespace alpenglow::python

@@ -79,9 +79,10 @@ py::dict renderScenes(std::vector<std::string> flags, const py::list& given, boo
     const auto poll = [&] {
         messages.deliver(message);
         if (auto picture = watcher.grown()) preview(pictureDict(std::move(*picture)));
-        const auto told = watcher.told();
-        if (!told || progress.is_none() || ended) return;
-        if (const py::object answer = progress(progressDict(*told)); py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) {
+        const auto latest = watcher.latest();
+        if (!latest || progress.is_none() || ended) return;
+        if (const py::object answer = progress(progressDict(*latest));
+            py::isinstance<py::bool_>(answer) && !answer.cast<bool>()) {
             ended = true;
             stop = 1;
         }

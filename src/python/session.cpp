@@ -57,7 +57,7 @@ Session::Session(std::vector<std::string> flags, const std::string& script, bool
     if (keep || !progress_.is_none()) r.arguments.settings.watcher = &r.watcher;
     r.renderer.emplace(r.arguments.settings, render::transportEngine(), messages_.diagnostics, r.silent);
     ri::ReaderOptions options = readerOptions(r.arguments, true);
-    options.threads = false; // there is no file that tells which archives come
+    options.threads = false; // there is no file to look ahead in for archives
     options.overrides = [&r](scene::Options& o) { r.renderer->override(o); };
     r.interpreter.emplace(options, *r.renderer, messages_.diagnostics);
     r.renderer->setProcedurals([&r](const scene::Frame& f, std::span<const int> which) { return r.interpreter->make(f, which); });
@@ -89,9 +89,9 @@ ri::Interpreter& Session::interpreter() { return *rendering_->interpreter; }
 void Session::deliver() {
     messages_.deliver(message_);
     if (!rendering_) return;
-    const auto told = rendering_->watcher.told();
-    if (!told || progress_.is_none()) return;
-    if (const py::object answer = progress_(progressDict(*told)); py::isinstance<py::bool_>(answer) && !answer.cast<bool>())
+    const auto latest = rendering_->watcher.latest();
+    if (!latest || progress_.is_none()) return;
+    if (const py::object answer = progress_(progressDict(*latest)); py::isinstance<py::bool_>(answer) && !answer.cast<bool>())
         stop_ = 1;
 }
 

@@ -219,7 +219,7 @@ std::optional<std::vector<rsl::ParameterValue>> constants(const rsl::CompiledSha
     for (const auto& [name, text] : r.strings) {
         const rsl::ParameterValue* v = find(name);
         if (!v) return {};
-        if (v->type.base != rsl::Base::String)
+        if (v->type.base != shadeops::Base::String)
             return refuse(d, shader, "parameter \"" + name + "\" takes numbers, not a string"), std::nullopt;
         given.push_back(*v);
         given.back().strings = {text};
@@ -228,7 +228,7 @@ std::optional<std::vector<rsl::ParameterValue>> constants(const rsl::CompiledSha
         const rsl::ParameterValue* v = find(name);
         if (!v) return {};
         const size_t want = v->numbers.size();
-        if (v->type.base == rsl::Base::String || (size_t(rows.width) != want && !(rows.width == 1 && want == 3)))
+        if (v->type.base == shadeops::Base::String || (size_t(rows.width) != want && !(rows.width == 1 && want == 3)))
             return refuse(d, shader, fmt::format("parameter \"{}\" takes {} numbers, not {}", name, want, rows.width)),
                    std::nullopt;
         if (rows.each) {
@@ -260,7 +260,7 @@ std::vector<ShadeOutput> shadeArrays(rsl::ShaderCompiler& compiler, std::shared_
     for (const auto& v : *given) names.insert(v.name);
     options.computedParameters = shader->computedParameters(names, options.varyingParameters);
     for (const auto& v : values)
-        if (v.type.base == rsl::Base::String && v.type.array == 0 && !v.strings.empty())
+        if (v.type.base == shadeops::Base::String && v.type.array == 0 && !v.strings.empty())
             options.stringParameters.emplace_back(v.name, v.strings[0]);
     const auto kernel = compiler.kernel(shader, options, d);
     if (!kernel) return {};

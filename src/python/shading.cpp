@@ -51,7 +51,7 @@ py::dict evaluateOne(const std::string& expression, const std::string& setup, in
     messages.deliver(message);
     py::dict d;
     d["ok"] = e.ok;
-    d["type"] = e.ok ? rsl::toString(e.type) : "";
+    d["type"] = e.ok ? shadeops::toString(e.type) : "";
     d["numbers"] = e.numbers;
     d["text"] = e.text;
     d["printed"] = e.printed;

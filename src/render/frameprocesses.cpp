@@ -39,7 +39,7 @@ std::string baseOf(const std::string& name) {
 
 } // namespace
 
-FrameProcesses::FrameProcesses(Use use, Diagnostics& told) : use_(std::move(use)), told_(told) {}
+FrameProcesses::FrameProcesses(Use use, Diagnostics& messages) : use_(std::move(use)), messages_(messages) {}
 
 FrameProcesses::~FrameProcesses() {
     for (Part& p : parts_) {
@@ -250,12 +250,12 @@ void FrameProcesses::writeOut(const std::string& bytes) {
         else if (errno != EINTR) lost_ = true;
     }
     if (lost_ && errno != EPIPE) // no message if the reader of the pipe has gone
-        told_.reportOnce("stdout", {Severity::Error,
-                                    errno == ENOSPC ? Rie::DiskFull : Rie::System,
-                                    {},
-                                    std::string("cannot write to standard output: ") + std::strerror(errno),
-                                    {},
-                                    {}});
+        messages_.reportOnce("stdout", {Severity::Error,
+                                        errno == ENOSPC ? Rie::DiskFull : Rie::System,
+                                        {},
+                                        std::string("cannot write to standard output: ") + std::strerror(errno),
+                                        {},
+                                        {}});
 }
 
 void FrameProcesses::tellEvent(const Event& e) {
@@ -263,21 +263,21 @@ void FrameProcesses::tellEvent(const Event& e) {
     if (e.kind == Kind::Error) std::fwrite(e.bytes.data(), 1, e.bytes.size(), stderr);
     Diagnostic d;
     if (e.kind != Kind::Message || !unpack(e.bytes, d)) return;
-    if (d.once.empty()) return told_.report(std::move(d));
+    if (d.once.empty()) return messages_.report(std::move(d));
     const std::string key = d.once;
-    told_.reportOnce(key, std::move(d));
+    messages_.reportOnce(key, std::move(d));
 }
 
 /// Prints what is due: all finished parts, and what exists of the first unfinished one.
 void FrameProcesses::tell() {
     while (!parts_.empty()) {
         Part& p = parts_.front();
-        if (!p.begun) p.errors = told_.errors(), p.warnings = told_.warnings(), p.begun = true;
+        if (!p.begun) p.errors = messages_.errors(), p.warnings = messages_.warnings(), p.begun = true;
         for (const Event& e : std::exchange(p.events, {})) tellEvent(e);
         if (p.process >= 0 || (open_ && parts_.size() == 1)) return;
-        if (p.result && p.made.told) {
-            p.made.told->figures.errors = told_.errors() - p.errors;
-            p.made.told->figures.warnings = told_.warnings() - p.warnings;
+        if (p.result && p.made.stats) {
+            p.made.stats->figures.errors = messages_.errors() - p.errors;
+            p.made.stats->figures.warnings = messages_.warnings() - p.warnings;
         }
         FrameResult made = std::move(p.made);
         made.outcome.outputFailed |= lost_;

@@ -36,8 +36,8 @@ public:
     };
     using Take = std::function<void(FrameResult)>;
 
-    /// `told` receives the messages in order; it must outlive this object.
-    FrameProcesses(Use, Diagnostics& told);
+    /// `messages` receives the messages in order; it must outlive this object.
+    FrameProcesses(Use, Diagnostics& messages);
     /// Ends the processes that are still rendering.
     ~FrameProcesses();
     FrameProcesses(const FrameProcesses&) = delete;
@@ -45,7 +45,7 @@ public:
 
     int most() const { return use_.most; }
     bool inProcess() const { return process_; } ///< this process was forked by start()
-    const Diagnostics& told() const { return told_; }
+    const Diagnostics& messages() const { return messages_; }
     /// Sets the receiver of each frame's result, in frame order, after its messages have been printed.
     void setTake(Take t) { take_ = std::move(t); }
     /// Reports a message: in the reading process after those of earlier frames, in a rendering process for its frame. For
@@ -113,7 +113,7 @@ private:
     void await(const std::string& asked);
 
     Use use_;
-    Diagnostics& told_;
+    Diagnostics& messages_;
     Take take_;
     std::deque<Part> parts_; ///< those not yet printed, in order
     bool open_ = false;      ///< between openFrame() and closeFrame(): the last part is the frame

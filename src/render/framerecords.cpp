@@ -23,7 +23,7 @@ template <class A> void each(A& a, FrameStats::Texture& t) { a(t.file, t.fileByt
 template <class A> void each(A& a, FrameStats& f) {
     a(f.frame, f.scene, f.sceneHash, f.hider, f.seed, f.pictures, f.textures, f.figures);
 }
-template <class A> void each(A& a, FrameResult& r) { a(r.outcome, r.told, r.parseSec, r.grown); }
+template <class A> void each(A& a, FrameResult& r) { a(r.outcome, r.stats, r.parseSec, r.grown); }
 
 class RecordPacker {
 public:

@@ -17,7 +17,7 @@ Hider hiderOf(const scene::Options&, Diagnostics&);
 
 struct Renderer::FrameWork {
     std::shared_ptr<const scene::Frame> frame;
-    FrameStats& told;
+    FrameStats& stats;
     const int errorsBefore; ///< of the run
     const scene::Options& o;
     Hider hider;
@@ -37,8 +37,8 @@ struct Renderer::FrameWork {
     Imager imager;
     uint64_t nonFinite = 0; ///< samples that were dropped
 
-    FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& stats, Diagnostics& d)
-        : frame(std::move(of)), told(stats), errorsBefore(d.errors()), o(frame->options), hider(hiderOf(o, d)),
+    FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& figures, Diagnostics& d)
+        : frame(std::move(of)), stats(figures), errorsBefore(d.errors()), o(frame->options), hider(hiderOf(o, d)),
           path(hider == Hider::Path), camera(o, d), made(frame) {}
 };
 

@@ -47,7 +47,7 @@ private:
     Window beginBand(const Window& part);
     void band(int b);
     void tell(double fraction, bool last);
-    Done told(int b, double begin, size_t tasks);
+    Done progressOf(int b, double begin, size_t tasks);
     void trace(SampleBuffer&, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list, const Done&);
     bool traceSlice(SampleBuffer&, int worker, std::span<const Wanted>);
     bool traceBehind(int worker, Kept&) const;
@@ -218,7 +218,7 @@ void ImageLoop::band(int b) {
                 for (int x = t.x0; x < t.x1; ++x)
                     for (int k = first; k < last; ++k) wanted.push_back({x, y, k});
         },
-        told(b, 0, tiles.size()));
+        progressOf(b, 0, tiles.size()));
     if (refinement_.on() && !job_.pollStop()) refine(buffer, part, b);
     growth_.reset();
     dropped_.count += buffer.nonFinite() - dropped;
@@ -263,7 +263,7 @@ void ImageLoop::tell(double fraction, bool last) {
 }
 
 /// Progress callback for a band; `begin`: 0, or 1 for refinement tasks.
-ImageLoop::Done ImageLoop::told(int b, double begin, size_t tasks) {
+ImageLoop::Done ImageLoop::progressOf(int b, double begin, size_t tasks) {
     return [this, b, begin, tasks](size_t done) {
         job_.pollStop();
         show();
@@ -371,7 +371,7 @@ void ImageLoop::refine(SampleBuffer& buffer, const Window& part, int b) {
                 for (int k = 0; k < nx_ * ny_; ++k)
                     if (k != pixels[p].k) wanted.push_back({pixels[p].x, pixels[p].y, k});
         },
-        told(b, 1, tasks));
+        progressOf(b, 1, tasks));
     result_.refined.pixels += pixels.size();
     result_.refined.rays += pixels.size() * size_t(nx_ * ny_ - 1);
 }

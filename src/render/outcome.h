@@ -26,9 +26,9 @@ struct Outcome {
 /// Result of a process for a frame, or for a Make request.
 struct FrameResult {
     Outcome outcome;
-    std::optional<FrameStats> told; ///< for a rendered frame
-    double parseSec = 0;            ///< for other frames
-    uint64_t grown = 0;             ///< memory in bytes that its process allocated for it; 0 if allocated at once
+    std::optional<FrameStats> stats; ///< for a rendered frame
+    double parseSec = 0;             ///< for other frames
+    uint64_t grown = 0;              ///< memory in bytes that its process allocated for it; 0 if allocated at once
 };
 
 } // namespace alpenglow::render

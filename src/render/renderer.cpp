@@ -112,7 +112,7 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
     stats_.parseSec += now - parseMark_;
     stats_.errors = -diagnostics_.errors();
     stats_.warnings = -diagnostics_.warnings();
-    FrameStats told;
+    FrameStats stats;
     if (processes_) processes_->openFrame();
     const int before = outcome_.rendered;
     const bool map = isMapPass(frame->options);
@@ -120,7 +120,7 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
     RenderSettings all;
     if (map) all = std::exchange(settings_, settingsOfMaps(settings_));
     try {
-        renderFrame(std::move(frame), told);
+        renderFrame(std::move(frame), stats);
     } catch (const LimitReached&) {
         outcome_.outOfMemory = true;
         ++outcome_.refused;
@@ -138,22 +138,22 @@ void Renderer::render(std::shared_ptr<const scene::Frame> frame) {
         diagnostics_.report(Severity::Severe, Rie::System, {}, std::string("this frame is given up: ") + e.what());
     }
     if (!processes_ || inProcess()) {
-        if (outcome_.rendered > (processes_ ? 0 : before)) closeFrame(std::move(told));
+        if (outcome_.rendered > (processes_ ? 0 : before)) closeFrame(std::move(stats));
     }
     if (processes_) endFrame();
     if (map) settings_ = std::move(all);
     parseMark_ = clockSeconds();
 }
 
-void Renderer::closeFrame(FrameStats told) {
+void Renderer::closeFrame(FrameStats stats) {
     stats_.errors += diagnostics_.errors();
     stats_.warnings += diagnostics_.warnings();
     stats_.threads = settings_.threads;
     stats_.peakMemoryBytes = peakMemoryBytes();
     stats_.settle();
-    told.figures = stats_;
-    told.scene = settings_.sceneFile;
-    frames_.push_back(std::move(told));
+    stats.figures = stats_;
+    stats.scene = settings_.sceneFile;
+    frames_.push_back(std::move(stats));
     accumulate(all_, stats_);
     stats_ = {};
 }
@@ -228,9 +228,9 @@ RenderStats Renderer::stats() const {
     s.threads = settings_.threads;
     s.peakMemoryBytes = std::max(s.peakMemoryBytes, peakMemoryBytes());
     s.settle();
-    const Diagnostics& told = processes_ ? processes_->told() : diagnostics_;
-    s.errors = told.errors();
-    s.warnings = told.warnings();
+    const Diagnostics& messages = processes_ ? processes_->messages() : diagnostics_;
+    s.errors = messages.errors();
+    s.warnings = messages.warnings();
     return s;
 }
 

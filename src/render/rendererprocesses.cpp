@@ -16,7 +16,7 @@ namespace alpenglow::render {
 void Renderer::setProcesses(FrameProcesses& p) {
     processes_ = &p;
     // Each process would repeat these: tables of the language, and TBB's search for its allocator.
-    rsl::runtimeHash();
+    shadeops::runtimeHash();
     tbb::cache_aligned_allocator<char> allocator;
     allocator.deallocate(allocator.allocate(1), 1);
     p.setTake([this](FrameResult r) { takeResult(std::move(r)); });
@@ -61,7 +61,7 @@ void Renderer::endFrame() {
         r.outcome = outcome_;
         r.parseSec = stats_.parseSec;
         if (grown_ == 0) r.grown = ownBytes() - std::min(ownBytes(), begun_);
-        if (!frames_.empty()) r.told = std::move(frames_.back());
+        if (!frames_.empty()) r.stats = std::move(frames_.back());
         processes_->finish(std::move(r));
     }
     processes_->closeFrame();
@@ -71,12 +71,12 @@ void Renderer::endFrame() {
 void Renderer::takeResult(FrameResult r) {
     outcome_.add(r.outcome);
     grown_ = std::max(grown_, r.grown);
-    if (!r.told) {
+    if (!r.stats) {
         stats_.parseSec += r.parseSec;
         return;
     }
-    accumulate(all_, r.told->figures);
-    frames_.push_back(std::move(*r.told));
+    accumulate(all_, r.stats->figures);
+    frames_.push_back(std::move(*r.stats));
 }
 
 void Renderer::settle() {

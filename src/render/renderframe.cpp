@@ -74,13 +74,13 @@ Hider hiderOf(const scene::Options& o, Diagnostics& diags) {
     return Hider::Hidden;
 }
 
-void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats& told) {
+void Renderer::renderFrame(std::shared_ptr<const scene::Frame> frame, FrameStats& stats) {
     if (settings_.stop && *settings_.stop) {
         outcome_.interrupted = true;
         return;
     }
     if (settings_.seedByFrame) settings_.seed = uint64_t(std::max(0, frame->options.frameNumber));
-    auto work = std::make_unique<FrameWork>(std::move(frame), told, diagnostics_);
+    auto work = std::make_unique<FrameWork>(std::move(frame), stats, diagnostics_);
     FrameWork& f = *work;
     if (f.o.hider != "photon" && !planFrame(f)) return;
     if (abandons(f) || !drawsHere(f)) return;
@@ -240,11 +240,11 @@ void Renderer::describeFrame(FrameWork& f) {
     f.picture.worldToCamera = f.camera.worldToCamera();
     f.picture.worldToNDC = f.camera.worldToNDC();
     f.picture.imager = f.o.imager != nullptr;
-    f.told.frame = f.o.frameNumber;
-    f.told.seed = settings_.seed;
-    f.told.hider = f.path ? "path" : f.hider == Hider::Raytrace ? "raytrace" : "hidden";
-    f.told.sceneHash = sceneDigest(*f.frame, "");
-    addProvenance(f.picture, settings_, *f.frame, f.told.hider, f.told.sceneHash);
+    f.stats.frame = f.o.frameNumber;
+    f.stats.seed = settings_.seed;
+    f.stats.hider = f.path ? "path" : f.hider == Hider::Raytrace ? "raytrace" : "hidden";
+    f.stats.sceneHash = sceneDigest(*f.frame, "");
+    addProvenance(f.picture, settings_, *f.frame, f.stats.hider, f.stats.sceneHash);
     stats_.curve = curvesOf(f.plan);
     stats_.width = f.camera.window().width();
     stats_.height = f.camera.window().height();
@@ -254,7 +254,7 @@ void Renderer::describeFrame(FrameWork& f) {
 void Renderer::writtenPictures(FrameWork& f, bool fine) {
     outcome_.outputFailed |= !fine;
     for (const OutputSpec& s : f.plan.pictures)
-        if (fine) f.told.pictures.push_back({s.name, s.type, s.channels()}), written_.push_back(followedPath(s.name));
+        if (fine) f.stats.pictures.push_back({s.name, s.type, s.channels()}), written_.push_back(followedPath(s.name));
     if (!fine) return;
     for (const OutputSpec& s : f.plan.pictures) // of an older picture: merge would mistake it for this one's
         if (!extensionOf(s.name).empty() && (f.checkpoint.empty() || !sameFile(sidecarName(s.name), f.checkpoint)))
@@ -475,7 +475,7 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.shading.affineKernels = facts.affine;
     stats_.shading.suspendingKernels = facts.suspending;
     stats_.shading.cacheHits = facts.cacheHits;
-    for (const auto& m : f.world->mapsRead()) f.told.textures.push_back({m.path, m.bytes, m.memory, m.scratch});
+    for (const auto& m : f.world->mapsRead()) f.stats.textures.push_back({m.path, m.bytes, m.memory, m.scratch});
     if (c.overLimit)
         diagnostics_.report(Severity::Error, Rie::Limit, {},
                             std::to_string(c.overLimit) +

@@ -169,8 +169,8 @@ std::string Interpreter::locate(const char* what, const std::string& name, const
                 folders.push_back((fs::path(sceneFolder_) / f).string());
         }
     folders.insert(folders.end(), settings.searchPaths.begin(), settings.searchPaths.end());
-    std::string beside = folderOf(place.file);
-    folders.push_back(beside.empty() ? "." : beside);
+    std::string folder = folderOf(place.file);
+    folders.push_back(folder.empty() ? "." : folder);
     folders.push_back(".");
     folders.insert(folders.end(), settings.lastArchivePaths.begin(), settings.lastArchivePaths.end());
     std::string fallback, outside;

@@ -47,7 +47,8 @@ Param* position(Primitive& p, Reporter& reporter) {
         auto i = std::find_if(p.params.begin(), p.params.end(), [&](const Param& v) { return v.name == f.name; });
         if (i == p.params.end()) continue;
         if (use) {
-            reporter.warning(Rie::Consistency, i->place, fmt::format("{}: \"{}\" beside \"{}\" is ignored", p.kind, f.name, use));
+            reporter.warning(Rie::Consistency, i->place,
+                             fmt::format("{}: \"{}\" next to \"{}\" is ignored", p.kind, f.name, use));
             p.params.erase(i);
             continue;
         }

@@ -267,7 +267,7 @@ private:
     void dropBlocks(size_t count);
     /// Runs `body`, which may recurse to here; at some depths on a new stack.
     void deeper(const std::function<void()>& body);
-    /// Reads what was found: recorded calls, or a stream that messages call `file`. key tells it from other open ones.
+    /// Reads what was found: recorded calls, or a stream that messages call `file`. key distinguishes it from other open ones.
     void readOpened(const std::string& key, const std::string& file, const std::shared_ptr<std::vector<Call>>& calls,
                     std::unique_ptr<ByteSource> source, const SourcePlace& place);
     /// Does `body`, which gives back where it ended, within archives and procedurals that are open, and closes what it leaves

@@ -90,7 +90,7 @@ double reachOf(const scene::Attributes& a, const Matrix& toWorld) {
 
 } // namespace
 
-/// What the camera need not meet, and what does not shine, can wait.
+/// What the camera need not meet, and what emits no light, can wait.
 bool Interpreter::waits(const std::string& kind, const std::vector<std::string>& arguments, const std::vector<float>& given,
                         const Call& call) {
     if (!settings.defers || !inWorld() || !frameWanted() || given.size() != 6) return false;

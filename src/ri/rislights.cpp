@@ -37,7 +37,7 @@ std::set<std::string> wordsOf(const scene::Param* p) {
     return all;
 }
 
-/// Whether the subsets of a primitive's attributes let a light of those groups shine on it.
+/// Whether the subsets of a primitive's attributes let a light of those groups illuminate it.
 bool linked(const scene::Attributes& a, const std::set<std::string>& groups) {
     const auto has = [&](const std::set<std::string>& subset) {
         return std::any_of(subset.begin(), subset.end(), [&](const std::string& s) { return groups.count(s) > 0; });

@@ -31,8 +31,8 @@ struct ShaderCompiler::State {
         o.rispecSpecular = settings.rispecSpecular;
         o.lint = settings.lint;
         if (settings.allowExec)
-            o.plugin = [this](const std::string& name, const std::string& beside, Raised& why, std::string& hint) {
-                std::vector<std::string> folders{beside};
+            o.plugin = [this](const std::string& name, const std::string& folder, Raised& why, std::string& hint) {
+                std::vector<std::string> folders{folder};
                 folders.insert(folders.end(), settings.pluginPaths.begin(), settings.pluginPaths.end());
                 return plugins.load(name, folders, why, hint);
             };

@@ -1,5 +1,6 @@
 #include "rsl/kernelkey.h"
 #include "rsl/jit/sha256.h"
+#include "rsl/names.h"
 #include "shadeops/descriptor.h"
 
 namespace alpenglow::rsl {
@@ -7,7 +8,7 @@ namespace alpenglow::rsl {
 const std::string& descriptorDigest() {
     static const std::string digest = [] {
         std::string all;
-        for (const Shadeop& op : shadeops()) {
+        for (const Shadeop& op : allShadeops()) {
             all += op.name + '\1' + char('0' + int(op.lowering)) + char('0' + int(op.derivative)) + char('0' + op.pure) +
                    char('0' + op.outOfLine) + op.rsl + '\1';
             for (const Signature& s : op.signatures) all += s.text + '\2' + s.symbol + '\1';

@@ -112,7 +112,7 @@ std::shared_ptr<const Plugin> PluginLibrary::load(const std::string& name, const
     if (!found) {
         why = msg::kPluginMissing(name);
         hint = "it is looked for as " + (file ? name : name + ".so") +
-               " beside the shader and in the folders of the rslplugin search path";
+               " in the folder of the shader and in the folders of the rslplugin search path";
         return nullptr;
     }
     std::error_code none;

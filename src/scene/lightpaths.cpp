@@ -194,7 +194,7 @@ bool LightPaths::build(std::span<const LightPathText> texts, std::string& why) {
         return false;
     }
     const Joint joint(texts);
-    // Events that no position tells apart are one class.
+    // Events that every position treats alike are one class.
     const size_t sets = labelSets(labels_.size());
     classOf_.assign(kKindCount * sets, 0);
     std::map<Places, uint16_t> known;

@@ -102,11 +102,11 @@ void Services::answerDepth(const ServiceCall& call) {
 void Services::transformBetween(const ServiceCall& call) {
     const rsl::ir::Site& d = call.d;
     const int n = d.op == "mtransform" ? 16 : 3;
-    const rsl::Base type = d.argTypes.empty() ? rsl::Base::Point : d.argTypes.back().base;
-    const char* symbol = n == 16                                             ? "al_multiply"
-                         : d.op == "vtransform" || type == rsl::Base::Vector ? "al_transformvector"
-                         : d.op == "ntransform" || type == rsl::Base::Normal ? "al_transformnormal"
-                                                                             : "al_transformpoint";
+    const shadeops::Base type = d.argTypes.empty() ? shadeops::Base::Point : d.argTypes.back().base;
+    const char* symbol = n == 16                                                  ? "al_multiply"
+                         : d.op == "vtransform" || type == shadeops::Base::Vector ? "al_transformvector"
+                         : d.op == "ntransform" || type == shadeops::Base::Normal ? "al_transformnormal"
+                                                                                  : "al_transformpoint";
     call.each([&](int lane, const ShadePoint& p) {
         std::string space[2];
         int row = 0;
@@ -122,7 +122,7 @@ void Services::transformBetween(const ServiceCall& call) {
         };
         for (int k = 0; k < n; ++k) in[n == 16 ? k : 16 + k] = call.at(row + k, lane);
         flatten(n == 16 ? in + 16 : in);
-        rsl::evaluateRuntime(symbol, in, n == 16 ? 32 : 19, out, n);
+        shadeops::evaluateRuntime(symbol, in, n == 16 ? 32 : 19, out, n);
         for (int k = 0; k < n; ++k) call.put(k, lane, out[k]);
     });
 }

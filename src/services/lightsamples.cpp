@@ -109,7 +109,7 @@ void Services::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int 
 
 int elementsOf(const BoundLight& light, const std::string& parameter) {
     for (const rsl::ParameterInfo& p : light.instance->program->parameters())
-        if (p.name == parameter) return p.type.base == rsl::Base::String ? 0 : std::max(p.type.array, 0);
+        if (p.name == parameter) return p.type.base == shadeops::Base::String ? 0 : std::max(p.type.array, 0);
     return 0;
 }
 

@@ -23,24 +23,24 @@ enum RandomUse : uint32_t {
 
 class Random {
 public:
-    explicit Random(const render::SampleNumbers& numbers) : numbers_(numbers) {}
-    Random(render::SeedKey seed, int px, int py, uint32_t sample) : numbers_(render::Sampler(seed, px, py), sample) {}
+    explicit Random(const SampleNumbers& numbers) : numbers_(numbers) {}
+    Random(SeedKey seed, int px, int py, uint32_t sample) : numbers_(Sampler(seed, px, py), sample) {}
     Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get2(vertex, use, occurrence); }
     float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get1(vertex, use, occurrence); }
 
-    /// For drawing many at once (render::NumberRows).
-    const render::SampleNumbers& numbers() const { return numbers_; }
+    /// For drawing many at once (NumberRows).
+    const SampleNumbers& numbers() const { return numbers_; }
 
     /// Numbers of draw k of n equal draws: stratified over the draws as over samples (SampleNumbers::draw).
     Random draw(uint32_t k, uint32_t n) const { return Random(numbers_.draw(k, n)); }
 
 private:
-    render::SampleNumbers numbers_;
+    SampleNumbers numbers_;
 };
 
 /// Random number key of the next vertex: a hash of the path of calls.
 inline uint32_t childVertex(uint32_t vertex, uint32_t site, uint32_t occurrence) {
-    uint64_t h = render::mix64((uint64_t(vertex) << 32 | site) ^ render::mix64(occurrence + 0x9e3779b97f4a7c15ull));
+    uint64_t h = mix64((uint64_t(vertex) << 32 | site) ^ mix64(occurrence + 0x9e3779b97f4a7c15ull));
     uint32_t v = uint32_t(h >> 32);
     return v ? v : 1;
 }

@@ -3,7 +3,7 @@
 namespace alpenglow::services {
 
 Services::Services(const WorldImpl& world, Diagnostics& d, Tracer* tracer)
-    : world_(&world), diagnostics_(d), tracer_(tracer), seed_(world.settings_.seed), noSample_(render::Sampler(seed_, 0, 0), 0) {}
+    : world_(&world), diagnostics_(d), tracer_(tracer), seed_(world.settings_.seed), noSample_(Sampler(seed_, 0, 0), 0) {}
 
 void KernelRun::forget() {
     bound = nullptr;

@@ -212,8 +212,8 @@ private:
     const WorldImpl* world_;
     Diagnostics& diagnostics_;
     Tracer* tracer_;
-    render::SeedKey seed_;
-    render::SampleNumbers noSample_; ///< for points without a camera sample
+    SeedKey seed_;
+    SampleNumbers noSample_; ///< for points without a camera sample
     ServiceMemo memo_;
     std::unordered_map<texture::Handle, const texture::IrradianceTable*> irradianceOf_;
     std::unordered_map<texture::Handle, const texture::SkyDirections*> skyOf_;

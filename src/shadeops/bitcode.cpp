@@ -23,7 +23,7 @@ AL_EMBED(alpenglow_bitcode_32, "runtime32.bc")
 AL_EMBED(alpenglow_bitcode_64, "runtime64.bc")
 AL_EMBED(alpenglow_bitcode_hash, "hash.txt")
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 Bitcode between(const unsigned char* begin, const unsigned char* end) { return {begin, static_cast<size_t>(end - begin)}; }
@@ -40,7 +40,7 @@ uint64_t hashDescriptors() {
         all.add(text);
         all.add("\xff");
     };
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         add(op.name);
         add(op.rsl);
         add(std::to_string(static_cast<int>(op.lowering)) + std::to_string(static_cast<int>(op.derivative)) +
@@ -91,4 +91,4 @@ std::string_view runtimeHash(int lanes) {
     return narrowHash;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 struct Bitcode {
     const unsigned char* data;
@@ -25,4 +25,4 @@ std::string runtimeLack(int lanes);
 /// A hash of everything that the bitcode depends on, that for `lanes` lanes included; part of the kernel cache's key.
 std::string_view runtimeHash(int lanes = 16);
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

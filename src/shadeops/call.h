@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T> struct Triple {
     T x, y, z;
@@ -154,4 +154,4 @@ template <size_t... I> constexpr auto collectEntries(std::index_sequence<I...>) 
 }
 #endif
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE

@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/call.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T> AL_INLINE T opComp(const Triple<T>& c, const T& i) {
     const vf at = truncLanes(value(i));
@@ -86,12 +86,12 @@ AL_RUNTIME(al_yiq_to_rgb, opYiqToRgb)
 AL_RUNTIME(al_rgb_to_xyz, opRgbToXyz)
 AL_RUNTIME(al_xyz_to_rgb, opXyzToRgb)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 std::vector<Shadeop> colourShadeops() {
     std::vector<Shadeop> list;
     Shadeop op;
@@ -134,5 +134,5 @@ std::vector<Shadeop> colourShadeops() {
     list.push_back(op);
     return list;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

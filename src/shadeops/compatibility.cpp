@@ -1,7 +1,7 @@
 // Shadeops of PRMan 13 to 17 that published shaders call and that need nothing new of the renderer, or only a name.
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 /// `text` once for each type: '$' is its name.
@@ -177,7 +177,7 @@ void addQuestions(std::vector<Shadeop>& list) {
     evalparam.examples = {{"evalparam(\"none\", x) + x", "3", "float x = 3;"}};
     Shadeop& shaderinfo = addCompatible(
         list, "shaderinfo", "Messages", each("float string", "float shaderinfo(string name; output $ answer)"), Lowering::Rsl,
-        "What PRMan tells about the shader that runs (\"pipelinestage\", \"shadername\"). Nothing is known by these names: "
+        "What PRMan says about the shader that runs (\"pipelinestage\", \"shadername\"). Nothing is known by these names: "
         "the result is 0, and "
         "answer stays as it was.");
     list.back().examples = {{"shaderinfo(\"shadername\", x)", "0", "string x = \"none\";"},
@@ -200,4 +200,4 @@ std::vector<Shadeop> compatibilityShadeops() {
     return list;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -2,7 +2,7 @@
 // (rsl/passes/differences.h); the rest is RSL over them.
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 /// Adds a shadeop with its text in RSL, if it has one.
@@ -117,4 +117,4 @@ std::vector<Shadeop> derivativeShadeops() {
     return list;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

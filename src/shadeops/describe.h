@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 /// Types of parameters; a length of -1 is an array of any length.
 inline constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kC{Base::Color, 0}, kP{Base::Point, 0}, kV{Base::Vector, 0},
@@ -57,4 +57,4 @@ inline constexpr const char* kOneLight = "one light with Cl = 1 stands straight 
 inline constexpr const char* kWhite = "all rays meet a surface with Ci = 1";
 inline constexpr const char* kNothing = "nothing stands there";
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

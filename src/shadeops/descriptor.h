@@ -7,7 +7,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 /// How the IR builder turns a call into IR.
 enum class Lowering : uint8_t {
@@ -105,7 +105,7 @@ struct Shadeop {
 };
 
 /// All shadeops, sorted by name. Built once, immutable.
-std::span<const Shadeop> shadeops();
+std::span<const Shadeop> allShadeops();
 const Shadeop* findShadeop(std::string_view name);
 
 /// Parses "float noise(point p; float w)", "type min(type x, y, ...)" is not accepted here: list generics one by one.
@@ -118,4 +118,4 @@ Signature parseSignature(std::string_view text, std::string symbol = {});
 /// in/out flattened as for Signature::symbol. False when the symbol is unknown.
 bool evaluateRuntime(std::string_view symbol, const float* in, int inCount, float* out, int outCount);
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

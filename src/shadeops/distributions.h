@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 /// A distribution: what the compiler must know to call its formula.
 struct Distribution {
@@ -45,4 +45,4 @@ inline std::string noDistribution(const std::string& op, std::string_view name) 
 }
 inline std::string knownDistributions() { return "the distributions are " + distributionNames(", "); }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -4,7 +4,7 @@
 // one instruction set to the next, never show in a result. Included by lanes.h.
 #pragma once
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 inline constexpr float kMagic = 0x1.8p23f; ///< x + kMagic rounds x to an integer, which is then in the low bits
 inline constexpr float kInfinity = __builtin_inff();
@@ -170,4 +170,4 @@ AL_INLINE vf powLanes(vf x, vf y) {
     return select(x < 0, select(whole, select(even, r, -r), vf(0)), r);
 }
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE

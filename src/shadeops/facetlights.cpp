@@ -1,7 +1,7 @@
 // ggx() and beckmann(): the facets of bsdf() summed over lights, as specular() sums its own.
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 std::vector<Shadeop> facetShadeops() {
     const auto make = [](const std::string& name, const char* distribution) {
@@ -54,4 +54,4 @@ std::vector<Shadeop> facetShadeops() {
     return {make("ggx", "Walter et al. 2007"), make("beckmann", "Beckmann and Spizzichino 1963; Walter et al. 2007")};
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

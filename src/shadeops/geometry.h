@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/call.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T> AL_INLINE T opX(const Triple<T>& p) { return p.x; }
 template <class T> AL_INLINE T opY(const Triple<T>& p) { return p.y; }
@@ -89,12 +89,12 @@ AL_RUNTIME(al_transformpoint, opTransformPoint)
 AL_RUNTIME(al_transformvector, opTransformVector)
 AL_RUNTIME(al_transformnormal, opTransformNormal)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 /// Adds a shadeop with what most of the section have in common.
@@ -223,5 +223,5 @@ std::vector<Shadeop> geometryShadeops() {
     addTransforms(list);
     return list;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -4,7 +4,7 @@
 #pragma once
 #include "shadeops/call.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T> AL_INLINE T opChain2(const T& v, const T& byS, const T& byT, const T& s, const T& t) {
     return withValue(s * value(byS) + t * value(byT), value(v));
@@ -62,4 +62,4 @@ AL_RUNTIME(al_chain2c_t, opCurve2Triple)
 AL_RUNTIME(al_chain3c_f, opCurve3)
 AL_RUNTIME(al_chain3c_t, opCurve3Triple)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE

@@ -3,7 +3,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 /// Floats that a symbol takes and gives at order 0; {0, 0} when it is unknown.
 struct RuntimeShape {
@@ -14,4 +14,4 @@ RuntimeShape runtimeShape(std::string_view symbol);
 /// Every symbol of the runtime, those that no signature names too.
 std::vector<std::string_view> runtimeSymbols();
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -3,7 +3,7 @@
 #pragma once
 #include "shadeops/lanes.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 struct Jet1 {
     vf v, du, dv;
@@ -208,4 +208,4 @@ template <class T> AL_INLINE T larger(const T& a, const T& b) { return select(va
 template <class T> AL_INLINE T absolute(const T& a) { return select(value(a) < 0, -a, withValue(a, absLanes(value(a)))); }
 template <> AL_MEMBER vf absolute<vf>(const vf& a) { return absLanes(a); }
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE

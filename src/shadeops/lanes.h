@@ -1,5 +1,5 @@
 // Numbers over lanes, and the few primitives that shadeops are written in. Compiled four ways: into the program at 4 lanes, into
-// its stages at 1 to 16 (transport/lanes), to bitcode at 4..64 lanes, and in a test with another type in place of float
+// its stages at 1 to 16 (src/lanes), to bitcode at 4..64 lanes, and in a test with another type in place of float
 // (ALPENGLOW_REFERENCE names the header that replaces this one). Lane-wise operations only, in a fixed order, with fused
 // multiply-add where the source says mad(): so every width gives the same bits.
 #pragma once
@@ -18,7 +18,7 @@
 #define AL_INLINE static inline __attribute__((always_inline))
 #define AL_MEMBER __attribute__((always_inline)) inline
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 typedef float vf __attribute__((ext_vector_type(ALPENGLOW_LANES)));
 typedef int vi __attribute__((ext_vector_type(ALPENGLOW_LANES)));
@@ -64,7 +64,7 @@ AL_INLINE vf signedSlope(vu h) { return fromBits((h & 0x807fffffu) | 0x3f000000u
 /// A hash that travels as a float's bits (strings, random()).
 AL_INLINE vu payload(vf x) { return bitsOf(x); }
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #include "shadeops/elementary.h"
 #endif

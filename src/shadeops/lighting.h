@@ -5,7 +5,7 @@
 #include "shadeops/lighting_fresnel.h"
 #include "shadeops/specular.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T>
 AL_INLINE Triple<T> opSpecularBrdf(const Triple<T>& l, const Triple<T>& n, const Triple<T>& v, const T& roughness) {
@@ -31,12 +31,12 @@ AL_RUNTIME(al_specularbrdf, opSpecularBrdf)
 AL_RUNTIME(al_fresnel, opFresnel)
 AL_RUNTIME(al_fresnelrt, opFresnelRt)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 /// Adds a shadeop with what most of the section have in common.
@@ -207,5 +207,5 @@ std::vector<Shadeop> lightingShadeops() {
     addReflectance(list);
     return list;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

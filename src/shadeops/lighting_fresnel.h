@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/call.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// Reflectance at a dielectric; c = cosine of the incident angle, eta = index before / index behind.
 template <class T> AL_INLINE T dielectricReflectance(const T& c, const T& eta) {
@@ -11,4 +11,4 @@ template <class T> AL_INLINE T dielectricReflectance(const T& c, const T& eta) {
     return select(value(k) <= 0, T(vf(1)), smaller((s * s + p * p) * vf(0.5f), T(vf(1))));
 }
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE

@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/call.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T> AL_INLINE T opRadians(const T& x) { return x * vf(kPi / 180); }
 template <class T> AL_INLINE T opDegrees(const T& x) { return x * vf(180 / kPi); }
@@ -160,12 +160,12 @@ AL_RUNTIME(al_filterstep_triangle, opFilterTriangle)
 AL_RUNTIME(al_filterstep_gaussian, opFilterGaussian)
 AL_RUNTIME(al_filterstep_catmullrom, opFilterCatmullrom)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 inline constexpr const char* kManual = "3Delight manual, 6.4.1"; ///< Shadeop::source
 
@@ -309,5 +309,5 @@ std::vector<Shadeop> mathematicsShadeops() {
     addFilteredSteps(list);
     return list;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -3,7 +3,7 @@
 #include "shadeops/call.h"
 #include "shadeops/geometry.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T> AL_INLINE Matrix<T> opTranslate(const Matrix<T>& a, const Triple<T>& t) {
     Matrix<T> r = a;
@@ -109,12 +109,12 @@ AL_RUNTIME(al_compm, opCompMatrix)
 AL_RUNTIME(al_setcompm, opSetcompMatrix)
 AL_RUNTIME(al_multiply, opMultiply)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 std::vector<Shadeop> matrixShadeops() {
     std::vector<Shadeop> list;
     const auto add = [&](const char* name, std::vector<Signature> signatures, const char* doc,
@@ -163,5 +163,5 @@ std::vector<Shadeop> matrixShadeops() {
     mtransform.source = "RISpec 3.2, 15.4";
     return list;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

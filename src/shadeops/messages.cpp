@@ -1,7 +1,7 @@
 // Message passing and information: 3Delight manual, 6.4.8. Values live in the renderer; here are the signatures.
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 constexpr uint32_t kNoImager = kSurface | kDisplacement | kVolume | kLight;
@@ -265,4 +265,4 @@ std::vector<Shadeop> arrayShadeops() {
     return list;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -6,7 +6,7 @@
 #include <optional>
 #include <utility>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 NarrowRuntime readNarrow(int lanes, std::string_view hash) {
@@ -34,4 +34,4 @@ const NarrowRuntime& narrowRuntime(int lanes, std::string_view hash) {
     return lanes == 4 ? four : eight;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -5,7 +5,7 @@
 #include <string_view>
 #include <vector>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 struct NarrowRuntime {
     std::vector<uint8_t> bytes; ///< bitcode; empty when `lack` says why
@@ -16,4 +16,4 @@ struct NarrowRuntime {
 /// bitcode/hash.txt: when that is not `hash`, the program's own, the file is of other sources and not taken.
 const NarrowRuntime& narrowRuntime(int lanes, std::string_view hash);
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/call.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 // The lattice: a coordinate times an odd constant plus an offset (without it a cell and its mirror image at the origin would
 // share a hash), neighbours by addition; a corner is the xor of its coordinates, folded and multiplied. Sequences of corners
@@ -163,12 +163,12 @@ template <class T> AL_INLINE Triple<T> opRandom3(const T& hash) { return unitTri
 AL_RUNTIME(al_random_f, opRandom)
 AL_RUNTIME(al_random_t, opRandom3)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 /// The forms of one family for the results float, color, point, vector, normal.
 std::vector<Signature> noiseForms(const char* name, const char* symbol, bool period) {
@@ -245,5 +245,5 @@ std::vector<Shadeop> noiseShadeops() {
     list.push_back(op);
     return list;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -2,7 +2,7 @@
 // take an array of the structure __radiancesample (rsl/library/structures), which is its members by the time they are called.
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 /// `text` with every `word` replaced.
@@ -462,4 +462,4 @@ std::vector<Shadeop> radianceSampleShadeops() {
     return list;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -1,7 +1,7 @@
 // Shadeops of BMRT that shaders of its time call, and bump() of the first interface: written in RSL over our own.
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 /// Adds a shadeop written in RSL.
@@ -159,4 +159,4 @@ std::vector<Shadeop> rayTestShadeops() {
     return list;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -3,7 +3,7 @@
 #include "shadeops/distributions.h"
 #include <array>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 /// Table 6.10. type: the default of "type".
@@ -355,4 +355,4 @@ std::vector<Shadeop> raytracingShadeops() {
     return list;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <cstdlib>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 /// Words, '[', ']', ';', ',', '(', ')' and "..." of a signature.
@@ -150,15 +150,15 @@ std::vector<OptionalParameter> operator+(std::vector<OptionalParameter> a, const
     return a;
 }
 
-std::span<const Shadeop> shadeops() {
+std::span<const Shadeop> allShadeops() {
     static const std::vector<Shadeop> all = buildAll();
     return all;
 }
 
 const Shadeop* findShadeop(std::string_view name) {
-    const std::span<const Shadeop> all = shadeops();
+    const std::span<const Shadeop> all = allShadeops();
     auto it = std::lower_bound(all.begin(), all.end(), name, [](const Shadeop& op, std::string_view n) { return op.name < n; });
     return it != all.end() && it->name == name ? &*it : nullptr;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -15,8 +15,8 @@
 #include "shadeops/bsdf/all.h"
 #endif
 #ifndef ALPENGLOW_BITCODE
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 inline constexpr int kEntryCount = __COUNTER__ - kFirstEntry;
 inline constexpr auto kEntries = collectEntries(std::make_index_sequence<kEntryCount>{});
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 #endif

@@ -7,7 +7,7 @@
 #include <algorithm>
 #include <map>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 const lanes4::RuntimeEntry* findEntry(std::string_view symbol) {
     static const auto table = [] {
@@ -42,4 +42,4 @@ bool evaluateRuntime(std::string_view symbol, const float* in, int inCount, floa
     return true;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -1,7 +1,7 @@
-// The convention of specular(), in one place: its RSL form (shadeops/lighting.h) and its lobe (transport/) both read it.
+// The convention of specular(), in one place: its RSL form (shadeops/lighting.h) and its lobe (src/integrator) both read it.
 #pragma once
 
-namespace alpenglow {
+namespace alpenglow::shadeops {
 
 /// The exponent of specular() and specularbrdf() is this number over the roughness: pictures made by BMRT and PRMan follow it
 /// (docs/gallery.md). A power of two, so that kSpecularExponent / (kSpecularExponent * r) is 1 / r to the bit.
@@ -9,4 +9,4 @@ inline constexpr float kSpecularExponent = 8;
 /// As RISpec prints it: Option "shade" "specular" "rispec", or the dialect "rispec". That of specularstd() always.
 inline constexpr float kRispecExponent = 1;
 
-} // namespace alpenglow
+} // namespace alpenglow::shadeops

@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/call.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// Segment number and parameter within it, for v over `segments` segments; v is clamped to [0,1].
 template <class T> AL_INLINE Pair<T> opSplineSegment(const T& v, const T& segments) {
@@ -100,12 +100,12 @@ AL_SPLINE(linear, Linear)
 #undef AL_SPLINE
 AL_RUNTIME(al_splinesegment, opSplineSegment)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 std::vector<Shadeop> splineShadeops() {
     Shadeop op;
     op.section = "Mathematics";
@@ -138,5 +138,5 @@ std::vector<Shadeop> splineShadeops() {
     op.examples = {{"spline(0.5, 0, 0, 1, 1)", "0.5"}, {"spline(\"linear\", 0.25, 9, 0, 1, 9)", "0.25"}};
     return {op};
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

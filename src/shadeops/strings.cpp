@@ -1,7 +1,7 @@
 // Strings and standard output: 3Delight manual, 6.4.7.
 #include "shadeops/describe.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 std::vector<Shadeop> stringShadeops() {
     std::vector<Shadeop> list;
@@ -46,4 +46,4 @@ std::vector<Shadeop> stringShadeops() {
     return list;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

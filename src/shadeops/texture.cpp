@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 namespace {
 
 std::vector<OptionalParameter> filterParameters() {
@@ -229,4 +229,4 @@ std::vector<Shadeop> textureShadeops() {
     return withFootprints(std::move(list));
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -1,7 +1,7 @@
 #include "shadeops/types.h"
 #include <iterator>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 int componentCount(Base base) {
     switch (base) {
@@ -33,4 +33,4 @@ std::string toString(Type type) {
     return text;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <string>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 /// Shader: a handle of another shader. Bases above these are structures, numbered by the front end while it reads a file.
 enum class Base : uint8_t { Void, Bool, Float, Color, Point, Vector, Normal, Matrix, String, Shader };
@@ -39,4 +39,4 @@ enum Context : uint32_t {
     kAnyContext = 63
 };
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

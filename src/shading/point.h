@@ -68,7 +68,7 @@ struct PathSample {
     float shutter = 0;    ///< as a fraction of the open shutter
     float level = 0.5f;   ///< random number for transitions between levels of detail
     bool records = false; ///< of an irradiance caching pass (CameraRay::records)
-    render::SampleNumbers numbers{render::Sampler(0, 0, 0), 0};
+    SampleNumbers numbers{Sampler(0, 0, 0), 0};
     const GridPoint* grid = nullptr; ///< given hit, regardless of other geometry (CameraRay::grid)
 };
 

@@ -25,7 +25,7 @@ size_t cellOf(const Vec3& w) {
 Color lightAt(Handle map, const LatLong& axes, const Vec3& w, float side) {
     LookupOptions colours;
     colours.asLight = true;
-    const Vec3 beside = std::fabs(w.z) < .9f ? cross(w, Vec3(0, 0, 1)) : cross(w, Vec3(1, 0, 0)), t = beside / length(beside);
+    const Vec3 across = std::fabs(w.z) < .9f ? cross(w, Vec3(0, 0, 1)) : cross(w, Vec3(1, 0, 0)), t = across / length(across);
     float v[3] = {};
     environment(map, axes, 0, 3, w, t * side, cross(w, t) * side, colours, v);
     return {v[0], v[1], v[2]};

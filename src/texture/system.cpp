@@ -53,7 +53,7 @@ Decode decodeOf(const display::Image& m, bool undeclared) {
         if (std::fabs(gamma - 1) < 0.01) return {};
         return [gamma](float v) { return float(exact::pow(std::max(0.0, double(v)), 1 / gamma)); };
     }
-    // Maps of maketx are floats: metadata tells the kind of their picture.
+    // Maps of maketx are floats: metadata says the kind of their picture.
     const bool eight = (m.bits == 8 && !m.floating && space.empty()) || space == kEightBits;
     if (undeclared && eight && textOf(m, "textureformat") != "Shadow")
         return [](float v) { return srgbDecode(std::max(0.0f, v)); };

@@ -308,8 +308,8 @@ static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKe
                                        {Severity::Error,
                                         Rie::BadToken,
                                         placeOf(s, k),
-                                        rsl::noDistribution(s.op, distribution) + "; one ray along R is traced",
-                                        rsl::knownDistributions(),
+                                        shadeops::noDistribution(s.op, distribution) + "; one ray along R is traced",
+                                        shadeops::knownDistributions(),
                                         {}});
     }
     i.trace = traceSite(i, s, k, world);
@@ -398,7 +398,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         b.needs.globalPhotons |= i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere);
         b.needs.facePlaces |= i.service && (i.service->traits & kReadsFacePlaces);
         bindLobe(i);
-        i.exponent = s.op == "specularstd" || world.rispecSpecular_ ? kRispecExponent : kSpecularExponent;
+        i.exponent = s.op == "specularstd" || world.rispecSpecular_ ? shadeops::kRispecExponent : shadeops::kSpecularExponent;
         auto rowOf = [&](const char* name) {
             auto f = i.named.find(name);
             return f == i.named.end() ? -1 : f->second;

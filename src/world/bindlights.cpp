@@ -123,7 +123,7 @@ BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, bool photons, Di
     for (const auto& p : light.program->parameters())
         if (givesPhotons(p.name)) sends = true;
         else if (const std::string name = OutputName::parameterOf(p.name).text();
-                 p.output && p.type.base != rsl::Base::String && std::find(extra.begin(), extra.end(), name) == extra.end())
+                 p.output && p.type.base != shadeops::Base::String && std::find(extra.begin(), extra.end(), name) == extra.end())
             extra.push_back(name);
     // Values for outputs of the surface by outputchannel(), if a display requests them.
     for (const OutputName& name : wanted_)

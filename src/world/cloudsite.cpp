@@ -7,17 +7,17 @@ namespace alpenglow::world {
 
 namespace {
 
-pointcloud::ChannelType channelOf(rsl::Type t) {
+pointcloud::ChannelType channelOf(shadeops::Type t) {
     switch (t.base) {
-    case rsl::Base::Color:
+    case shadeops::Base::Color:
         return pointcloud::ChannelType::Color;
-    case rsl::Base::Point:
+    case shadeops::Base::Point:
         return pointcloud::ChannelType::Point;
-    case rsl::Base::Vector:
+    case shadeops::Base::Vector:
         return pointcloud::ChannelType::Vector;
-    case rsl::Base::Normal:
+    case shadeops::Base::Normal:
         return pointcloud::ChannelType::Normal;
-    case rsl::Base::Matrix:
+    case shadeops::Base::Matrix:
         return pointcloud::ChannelType::Matrix;
     default:
         return pointcloud::ChannelType::Float;
@@ -98,8 +98,8 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
             if (i.text.count(name) || (r >= 0 && s.argKinds[a] == rsl::ir::Kind::String)) noteString(name, l.place, world);
             if (r < 0 || s.argKinds[a] == rsl::ir::Kind::String) continue;
             c->parts.push_back({name,
-                                a < s.argTypes.size() && s.argTypes[a].base != rsl::Base::Void ? channelOf(s.argTypes[a])
-                                                                                               : channelOf(s.argKinds[a]),
+                                a < s.argTypes.size() && s.argTypes[a].base != shadeops::Base::Void ? channelOf(s.argTypes[a])
+                                                                                                    : channelOf(s.argKinds[a]),
                                 r});
         }
     }

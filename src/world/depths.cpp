@@ -6,7 +6,8 @@
 namespace alpenglow::world {
 namespace {
 
-bool tells(const BoundKernel& k) {
+/// Whether a kernel prints, or calls what may do anything.
+bool hasEffects(const BoundKernel& k) {
     return std::any_of(k.sites.begin(), k.sites.end(),
                        [](const SiteInfo& s) { return s.kind == SiteKind::Printf || s.kind == SiteKind::Other; });
 }
@@ -19,11 +20,11 @@ bool depthsNeedNoShaders(const World& world) {
         return false;
     for (const SurfaceBinding& b : w->bindings_)
         for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel})
-            if (tells(*k)) return false;
+            if (hasEffects(*k)) return false;
     for (const BoundLight& l : w->lights_) {
-        if (tells(l.kernel)) return false;
+        if (hasEffects(l.kernel)) return false;
         for (const auto& [strings, k] : l.variants)
-            if (tells(k)) return false;
+            if (hasEffects(k)) return false;
     }
     return true;
 }

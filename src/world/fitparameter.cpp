@@ -5,7 +5,7 @@
 namespace alpenglow::world {
 namespace {
 
-using rsl::Base;
+using shadeops::Base;
 
 Base baseOf(scene::Type t) {
     switch (t) {
@@ -37,7 +37,7 @@ std::string with(const char* article, const std::string& what) { return std::str
 
 /// A type in words of a message: "a float", "a color[3]", "an array of strings".
 std::string shown(const rsl::ParameterInfo& p) {
-    return p.open ? with("an", "array of " + rsl::toString(p.type.element()) + "s") : with("a", rsl::toString(p.type));
+    return p.open ? with("an", "array of " + shadeops::toString(p.type.element()) + "s") : with("a", shadeops::toString(p.type));
 }
 
 } // namespace
@@ -45,16 +45,19 @@ std::string shown(const rsl::ParameterInfo& p) {
 std::optional<rsl::ParameterValue> fitParameter(const scene::Param& given, const rsl::ParameterInfo& p, const std::string& shader,
                                                 const SourcePlace& call, Diagnostics& d) {
     const bool text = p.type.base == Base::String, givenText = given.type == scene::Type::String;
-    const size_t each = size_t(rsl::componentCount(p.type.base)), have = givenText ? given.strings.size() : given.numbers.size();
+    const size_t each = size_t(shadeops::componentCount(p.type.base)),
+                 have = givenText ? given.strings.size() : given.numbers.size();
     size_t want = each * size_t(std::max(1, p.type.array));
     if (p.open && have >= each && have % each == 0) want = std::min(have, each * size_t(limits::kShaderArray));
-    const rsl::Type was{baseOf(given.type), given.arrayLength};
+    const shadeops::Type was{baseOf(given.type), given.arrayLength};
     const std::string head = "parameter \"" + given.name + "\" of shader \"" + shader + "\" is " + shown(p);
     const auto say = [&](Severity severity, const std::string& what) {
-        d.reportOnce("parameter:" + shader + ":" + given.name + ":" + std::to_string(have) + rsl::toString(was),
+        d.reportOnce("parameter:" + shader + ":" + given.name + ":" + std::to_string(have) + shadeops::toString(was),
                      {severity, Rie::Consistency, given.place.file.empty() ? call : given.place, head + what, {}, {}});
     };
-    const std::string otherType = ", not " + with("a", given.declared ? rsl::toString(was) : givenText ? "string" : "number");
+    const std::string otherType = ", not " + with("a", given.declared ? shadeops::toString(was)
+                                                       : givenText    ? "string"
+                                                                      : "number");
     if (text != givenText && have > 0) {
         say(Severity::Error, otherType + "; its default is used");
         return std::nullopt;

@@ -110,7 +110,7 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, const WorldImpl& 
         const auto n = i.text.find(rsl::kPairGather);
         return n == i.text.end() ? std::string() : n->second;
     };
-    const auto told = [&](const SiteInfo& i, const std::string& what, const std::string& hint) {
+    const auto warn = [&](const SiteInfo& i, const std::string& what, const std::string& hint) {
         const rsl::Place& at = i.site->place;
         const SourcePlace place{at.file >= 0 && at.file < int(k.files().size()) ? k.files()[size_t(at.file)] : "", at.line,
                                 at.column};
@@ -126,11 +126,11 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, const WorldImpl& 
         if (i.kind == SiteKind::GatherIteration) {
             g->outputs.clear();
             const auto unknown = [&](const std::string& name) {
-                told(i, "\"" + name + "\" is not known; the variable is not changed",
+                warn(i, "\"" + name + "\" is not known; the variable is not changed",
                      "names begin with surface: displacement: volume: primitive: attribute: ray: environment:");
             };
             readOutputs(*i.site, *g, unknown, [&](const std::string& name) {
-                told(i, "the variable of \"" + name + "\" has another type; it is not changed",
+                warn(i, "the variable of \"" + name + "\" has another type; it is not changed",
                      "ray:length and environment:solidangle are floats; the others a colour, a point or a vector");
             });
             for (const GatherSite::Output& o : g->outputs) {
@@ -152,13 +152,13 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, const WorldImpl& 
             const auto map = world.textures_->open(category.substr(kSky.size()), world.settings_.texturePaths, place);
             g->sky = &world.skyMaps_.of(map, world.textures_->latLong());
         } else if (!category.empty() && category != "illuminance") {
-            told(i, "the category \"" + category + "\" is not known; \"illuminance\" is used",
+            warn(i, "the category \"" + category + "\" is not known; \"illuminance\" is used",
                  "illuminance, samplepattern, environment:MAP");
         }
         if (const auto d = i.text.find("distribution"); d != i.text.end()) {
             g->cosine = d->second == "cosine";
             if (!g->cosine && d->second != "uniform")
-                told(i, "the distribution \"" + d->second + "\" is not known; uniform is used", "uniform, cosine");
+                warn(i, "the distribution \"" + d->second + "\" is not known; uniform is used", "uniform, cosine");
         }
         readSent(i, *g);
         if (const auto t = i.named.find("othreshold"); t != i.named.end()) g->threshold = t->second;
@@ -167,7 +167,7 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, const WorldImpl& 
 
 /// Whether what is sent to a parameter comes as an input of its own: it may have another value at each point, which texts have
 /// not in kernels otherwise, nor arrays another length.
-static bool apart(const rsl::ParameterInfo& p) { return p.type.base == rsl::Base::String || p.open || p.type.array < 0; }
+static bool apart(const rsl::ParameterInfo& p) { return p.type.base == shadeops::Base::String || p.open || p.type.array < 0; }
 
 std::vector<std::string> GatheredNames::withSent(std::vector<std::string> varying, const ShaderInstance& shader,
                                                  rsl::PairName::To to) const {

@@ -12,7 +12,7 @@ namespace {
 constexpr float kMostAnisotropy = 0.999f;
 
 /// Whether a shader has an output of this name and type.
-bool hasOutput(const ShaderInstance& s, const char* name, rsl::Base type) {
+bool hasOutput(const ShaderInstance& s, const char* name, shadeops::Base type) {
     for (const rsl::ParameterInfo& p : s.program->parameters())
         if (p.name == name) return p.output && !p.type.array && p.type.base == type;
     return false;
@@ -39,10 +39,10 @@ void WorldImpl::bindHomogeneous(Medium& m, Evaluator& evaluator, Diagnostics& d)
     const ShaderInstance& shader = *m.shader;
     std::vector<std::string> names, outputs;
     for (const char* name : {"__absorption", "__scattering", "__emission"})
-        if (hasOutput(shader, name, rsl::Base::Color)) names.push_back(name);
+        if (hasOutput(shader, name, shadeops::Base::Color)) names.push_back(name);
     const bool medium = std::find_if(names.begin(), names.end(), [](const auto& n) { return n != "__emission"; }) != names.end();
     for (const char* name : {"__anisotropy", "__priority"})
-        if (hasOutput(shader, name, rsl::Base::Float)) names.push_back(name);
+        if (hasOutput(shader, name, shadeops::Base::Float)) names.push_back(name);
     if (names.empty()) return;
     for (const std::string& name : names) addOutput(shader, OutputName::of(name), outputs);
     const BoundKernel k = kernel(shader, outputs, {}, false, false, d);

@@ -8,7 +8,7 @@ namespace alpenglow::world {
 
 namespace {
 constexpr char kPlace[] = "shader@"; // not a space name of a scene: followed by sixteen numbers
-constexpr rsl::Type kColor{rsl::Base::Color, 0};
+constexpr shadeops::Type kColor{shadeops::Base::Color, 0};
 } // namespace
 
 std::set<std::string> calledOfLights(const rsl::Program& program) {

@@ -13,8 +13,8 @@ int channelWidth(const ShaderInstance& shader, const rsl::OutputName& name) {
     const bool element = name.element >= 0;
     int most = 0;
     const auto look = [&](const rsl::Program& program) {
-        const auto width = [&](const rsl::Type& type) {
-            return rsl::componentCount(type.base) * (element ? 1 : std::max(1, type.array));
+        const auto width = [&](const shadeops::Type& type) {
+            return shadeops::componentCount(type.base) * (element ? 1 : std::max(1, type.array));
         };
         for (const auto& [channel, type] : program.channels)
             if (channel[0] == rsl::kAnyChannel) most = std::max(most, width(type));
@@ -30,11 +30,11 @@ int widthIn(const ShaderInstance& shader, const rsl::OutputName& name) {
     const std::string& base = name.name;
     const bool element = name.element >= 0;
     for (const rsl::ParameterInfo& p : shader.program->parameters()) {
-        if (p.name != base || !p.output || p.type.base == rsl::Base::String) continue;
+        if (p.name != base || !p.output || p.type.base == shadeops::Base::String) continue;
         int length = std::max(1, p.type.array);
         const auto given = shader.parameters.strings.find(rsl::lengthParameter(p.name));
         if (p.open && given != shader.parameters.strings.end()) length = std::max(1, std::atoi(given->second.c_str()));
-        return rsl::componentCount(p.type.base) * (element || !p.type.array ? 1 : length);
+        return shadeops::componentCount(p.type.base) * (element || !p.type.array ? 1 : length);
     }
     return channelWidth(shader, name);
 }
@@ -115,7 +115,7 @@ std::vector<std::string> WorldImpl::knownOutputs() const {
     };
     for (const ShaderInstance* i : givers()) {
         for (const rsl::ParameterInfo& p : i->program->parameters())
-            if (p.output && p.type.base != rsl::Base::String) names.insert(p.name);
+            if (p.output && p.type.base != shadeops::Base::String) names.insert(p.name);
         channels(i->program->program());
         for (const rsl::CoShader& c : i->coShaders) channels(*c.program);
     }

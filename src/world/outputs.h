@@ -12,7 +12,7 @@ bool givesChannel(const ShaderInstance&, const rsl::OutputName&);
 bool givesPerhaps(const ShaderInstance&, const rsl::OutputName&);
 /// Indices of a kernel's outputs that form the AOV of a name; all elements for an array. Empty: none.
 std::vector<int> outputsNamed(const shading::Batch&, const rsl::OutputName&);
-/// Appends an output that displays request, and before it the one that tells where it is written.
+/// Appends an output that displays request, and before it the one that says where it is written.
 void addOutput(const ShaderInstance&, const rsl::OutputName&, std::vector<std::string>& outputs);
 /// Returns false if the shader could have written this output at the point, and did not.
 bool givenAt(const shading::Batch&, const rsl::OutputName&, int point);

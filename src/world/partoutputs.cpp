@@ -37,9 +37,9 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
     };
     if (std::none_of(outputs.begin() + 2, outputs.end(), asked)) return; // Ci and Oi are the first two
     const auto slots = world_.lightOfOutputs(*b.surface, outputs, varying, path_);
-    Names plain = outputs, beside{};
+    Names plain = outputs, parameters{};
     for (const std::string& name : outputs)
-        if (rsl::OutputName::parse(name).parameter) beside.push_back(name); // lights query it
+        if (rsl::OutputName::parse(name).parameter) parameters.push_back(name); // lights query it
     std::vector<char> aside(wanted.size(), 0);
     for (size_t k = 0; k < wanted.size(); ++k) {
         bool light = false, good = true;
@@ -56,7 +56,7 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
             good &= output.kind == rsl::ir::Kind::Float || output.kind == rsl::ir::Kind::Triple;
             LightOutput& o = found.emplace_back();
             o.slot = name;
-            o.outputs = beside;
+            o.outputs = parameters;
             o.outputs.insert(o.outputs.begin(), output.name);
             places.push_back({name, int(k), component, size});
             component += size;

@@ -120,7 +120,7 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, const WorldImpl& world
     r->excludeText = text("excludesubset");
     r->subsetId = rsl::internString(r->subsetText);
     r->excludeId = rsl::internString(r->excludeText);
-    const bool distance = i.kind == SiteKind::Trace && i.site->resultType.base == rsl::Base::Float; // float trace()
+    const bool distance = i.kind == SiteKind::Trace && i.site->resultType.base == shadeops::Base::Float; // float trace()
     const std::string type = !text("type").empty() ? text("type") : text("raytype");
     if (!type.empty() && type != "specular" && type != "diffuse" && type != "transmission")
         unknown("type", type, "specular, diffuse, transmission");

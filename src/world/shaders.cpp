@@ -32,17 +32,17 @@ std::string nearShader(const std::string& name, const std::vector<std::string>& 
     return near.empty() ? "" : "did you mean \"" + near + "\"?";
 }
 
-void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) {
-    for (size_t i = 0; i + 2 < v.size() && base != rsl::Base::Matrix; i += 3) {
+void transformParameter(std::vector<float>& v, shadeops::Base base, const Matrix& m) {
+    for (size_t i = 0; i + 2 < v.size() && base != shadeops::Base::Matrix; i += 3) {
         Vec3d p(v[i], v[i + 1], v[i + 2]);
         switch (base) {
-        case rsl::Base::Point:
+        case shadeops::Base::Point:
             p = transformPoint(m, p);
             break;
-        case rsl::Base::Vector:
+        case shadeops::Base::Vector:
             p = transformVector(m, p);
             break;
-        case rsl::Base::Normal:
+        case shadeops::Base::Normal:
             p = transformNormal(m, p);
             break;
         default:
@@ -52,7 +52,7 @@ void transformParameter(std::vector<float>& v, rsl::Base base, const Matrix& m) 
         v[i + 1] = float(p.y);
         v[i + 2] = float(p.z);
     }
-    if (base == rsl::Base::Matrix) // given relative to shader space
+    if (base == shadeops::Base::Matrix) // given relative to shader space
         for (size_t i = 0; i + 15 < v.size(); i += 16) {
             Matrix a;
             for (int k = 0; k < 16; ++k) a.m[k / 4][k % 4] = v[i + size_t(k)];
@@ -127,10 +127,10 @@ void WorldImpl::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterV
         return known;
     };
     for (auto& v : compiler_->parameterValues(i->program, d, spaces, values)) {
-        if (v.type.base == rsl::Base::String && v.type.array != 0) { // elements have their own names: "maps[1]"
+        if (v.type.base == shadeops::Base::String && v.type.array != 0) { // elements have their own names: "maps[1]"
             for (size_t e = 0; e < v.strings.size(); ++e)
                 i->parameters.strings[v.name + "[" + std::to_string(e) + "]"] = v.strings[e];
-        } else if (v.type.base == rsl::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
+        } else if (v.type.base == shadeops::Base::String) i->parameters.strings[v.name] = v.strings.empty() ? "" : v.strings[0];
         else i->parameters.numbers[v.name] = std::move(v.numbers);
     }
 }
@@ -225,7 +225,7 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
         if (!value) continue;
         if (p->open)
             i->parameters.strings[rsl::lengthParameter(given.name)] = std::to_string(
-                std::max(value->strings.size(), value->numbers.size() / size_t(rsl::componentCount(p->type.base))));
+                std::max(value->strings.size(), value->numbers.size() / size_t(shadeops::componentCount(p->type.base))));
         transformParameter(value->numbers, p->type.base, i->toCurrent);
         i->given.insert(given.name);
         if (p->handle) i->handlePlaces[given.name] = given.place.file.empty() ? call.place : given.place;

@@ -5,12 +5,12 @@ namespace alpenglow::world {
 
 ShaderValue::ShaderValue(const Information& i) : numbers(i.numbers), texts(i.texts) {}
 
-rsl::ir::Kind ShaderValue::kindOf(rsl::Base b) {
+rsl::ir::Kind ShaderValue::kindOf(shadeops::Base b) {
     using rsl::ir::Kind;
-    return b == rsl::Base::String   ? Kind::String
-           : b == rsl::Base::Matrix ? Kind::Matrix
-           : b == rsl::Base::Float  ? Kind::Float
-                                    : Kind::Triple;
+    return b == shadeops::Base::String   ? Kind::String
+           : b == shadeops::Base::Matrix ? Kind::Matrix
+           : b == shadeops::Base::Float  ? Kind::Float
+                                         : Kind::Triple;
 }
 
 std::optional<ShaderValue> shaderParameter(const ShaderInstance& shader, const std::string& parameter) {
@@ -23,7 +23,7 @@ std::optional<ShaderValue> shaderParameter(const ShaderInstance& shader, const s
                 length = std::atoi(given->second.c_str());
         ShaderValue t(p.type, length);
         t.varying = p.storage == rsl::Storage::Varying;
-        if (p.type.base == rsl::Base::String) {
+        if (p.type.base == shadeops::Base::String) {
             for (int e = 0; e < length; ++e) {
                 const auto text = texts.find(p.type.array ? p.name + "[" + std::to_string(e) + "]" : p.name);
                 t.texts.push_back(text == texts.end() ? "" : text->second);

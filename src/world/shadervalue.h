@@ -15,8 +15,8 @@ struct ShaderValue {
     ShaderValue() = default;
     explicit ShaderValue(const Information&);
     /// For a type of the shading language; no value yet.
-    explicit ShaderValue(const rsl::Type& type, int length) : kind(kindOf(type.base)), elements(type.array ? length : 0) {}
-    static rsl::ir::Kind kindOf(rsl::Base);
+    explicit ShaderValue(const shadeops::Type& type, int length) : kind(kindOf(type.base)), elements(type.array ? length : 0) {}
+    static rsl::ir::Kind kindOf(shadeops::Base);
 };
 
 /// A parameter of a shader as set by the scene; nothing if it has none of that name.

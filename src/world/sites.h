@@ -183,7 +183,7 @@ struct SiteInfo {
         int open = -1; ///< "environmentdir", not normalised
         int environment = -1, unshadowedEnvironment = -1, areaLight = -1, unshadowedAreaLight = -1;
     } results;
-    bool givesDistance() const { return kind == SiteKind::Trace && site->resultType.base == rsl::Base::Float; }
+    bool givesDistance() const { return kind == SiteKind::Trace && site->resultType.base == shadeops::Base::Float; }
     const LobeKind* lobe = nullptr; ///< Trace: the distribution; the lobe of a lighting shadeop
     float exponent = 1;             ///< Specular: this over the roughness (shadeops/specular.h)
     int rowWo = -1, rowExponent = -1, rowCone = -1, rowHorizon = -1, rowLights = -1; ///< of `named`

@@ -61,9 +61,10 @@ static void sayDirectOnly(const ShaderInstance& shader, const rsl::CompiledKerne
 
 /// Whether a primitive variable can replace a parameter: one string, as many numbers, or elements of the same kind.
 static bool overrides(const geometry::PrimVar& v, const rsl::ParameterInfo& p) {
-    if (p.type.base == rsl::Base::String || v.type == scene::Type::String)
-        return p.type.base == rsl::Base::String && v.type == scene::Type::String && !p.type.array && !p.open && !v.arrayLength;
-    const int each = rsl::componentCount(p.type.base);
+    if (p.type.base == shadeops::Base::String || v.type == scene::Type::String)
+        return p.type.base == shadeops::Base::String && v.type == scene::Type::String && !p.type.array && !p.open &&
+               !v.arrayLength;
+    const int each = shadeops::componentCount(p.type.base);
     return p.open ? v.arrayLength > 0 && v.outWidth() == each * v.elements() : v.outWidth() == each * std::max(1, p.type.array);
 }
 
@@ -80,24 +81,24 @@ SurfaceBinder::Names SurfaceBinder::varyingOf(const geometry::Shape& shape, cons
                                          v.param->place,
                                          "the variable \"" + p.name +
                                              "\" of the primitive does not fit the parameter of shader \"" + shader.name +
-                                             "\", which is a " + rsl::toString(p.type) + ": the parameter is not changed",
+                                             "\", which is a " + shadeops::toString(p.type) + ": the parameter is not changed",
                                          {},
                                          {}});
         }
     // The face number, if the primitive has no such variable.
     if (shape.findPrimvar(shading::kFaceIndex) < 0)
         for (const auto& p : shader.program->parameters())
-            if (p.name == shading::kFaceIndex && p.type.base == rsl::Base::Float && !p.type.array) varying.push_back(p.name);
+            if (p.name == shading::kFaceIndex && p.type.base == shadeops::Base::Float && !p.type.array) varying.push_back(p.name);
     // Queries of a shader and its co-shaders about the primitive, with the type that the first of them uses.
-    std::map<std::string, rsl::Type> all = shader.program->program().primitiveVariables;
+    std::map<std::string, shadeops::Type> all = shader.program->program().primitiveVariables;
     for (const rsl::CoShader& c : shader.coShaders)
         all.insert(c.program->primitiveVariables.begin(), c.program->primitiveVariables.end());
     for (const auto& [name, type] : all) {
         const int v = shape.findPrimvar(name);
-        const int width = type.base == rsl::Base::Void ? 0 : rsl::componentCount(type.base) * std::max(1, type.array);
+        const int width = type.base == shadeops::Base::Void ? 0 : shadeops::componentCount(type.base) * std::max(1, type.array);
         const bool text = v >= 0 && shape.primvars()[size_t(v)].type == scene::Type::String;
         if (v >= 0 &&
-            (width == 0 || (width == shape.primvars()[size_t(v)].outWidth() && text == (type.base == rsl::Base::String))) &&
+            (width == 0 || (width == shape.primvars()[size_t(v)].outWidth() && text == (type.base == shadeops::Base::String))) &&
             std::find(varying.begin(), varying.end(), name) == varying.end())
             varying.push_back(name);
     }
@@ -309,9 +310,9 @@ SurfaceBinder::Names SurfaceBinder::leftBy(const SurfaceBinding& b) {
             outputs.push_back(OutputName::left(name, length, what).text());
         };
         add(false, OutputName::What::Value);
-        const rsl::Type type = rsl::ownMember(b.displacement->program->shader(), name)->type;
+        const shadeops::Type type = rsl::ownMember(b.displacement->program->shader(), name)->type;
         if (type.array) add(true, OutputName::What::Value);
-        else if (type.base != rsl::Base::String && type.base != rsl::Base::Matrix)
+        else if (type.base != shadeops::Base::String && type.base != shadeops::Base::Matrix)
             add(false, OutputName::What::Du), add(false, OutputName::What::Dv);
     }
     return outputs;
@@ -331,7 +332,7 @@ void SurfaceBinder::hearMembers(SurfaceBinding& b) {
                                  {}});
         return;
     }
-    auto told = std::make_shared<ShaderInstance>(*b.surface);
+    auto extended = std::make_shared<ShaderInstance>(*b.surface);
     std::map<std::string, rsl::HeardMember> members;
     for (const auto& o : b.displacementS.kernel->outputs()) {
         const OutputName name = OutputName::parse(o.name);
@@ -340,9 +341,9 @@ void SurfaceBinder::hearMembers(SurfaceBinding& b) {
         what.length |= name.length;
         what.count = std::max(what.count, name.element + 1);
     }
-    for (const auto& [name, what] : members) told->parameters.strings[rsl::InputName::left(name).text()] = what.text();
-    InstanceRef& known = told_[{b.surface.get(), b.displacement.get()}];
-    if (!known) kept_.push_back(b.surface), known = told;
+    for (const auto& [name, what] : members) extended->parameters.strings[rsl::InputName::left(name).text()] = what.text();
+    InstanceRef& known = extended_[{b.surface.get(), b.displacement.get()}];
+    if (!known) kept_.push_back(b.surface), known = extended;
     b.surface = known;
     b.displacementTells = true;
 }
@@ -357,27 +358,27 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
     all |= questions(b.surfaceS, "displacement", asked);
     all |= b.atmosphere.shader && questions(b.atmosphere.kernel, "displacement", asked);
     Names outputs = left;
-    auto told = std::make_shared<ShaderInstance>(*b.surface);
+    auto extended = std::make_shared<ShaderInstance>(*b.surface);
     for (const auto& p : b.displacement->program->parameters()) {
         if (!p.output || (!all && !asked.count(p.name))) continue;
         const auto add = [&](OutputName::What what) { outputs.push_back(OutputName::parameterOf(p.name, -1, what).text()); };
         add(OutputName::What::Value);
-        if (p.type.array == 0 && p.type.base != rsl::Base::String && p.type.base != rsl::Base::Matrix)
+        if (p.type.array == 0 && p.type.base != shadeops::Base::String && p.type.base != shadeops::Base::Matrix)
             add(OutputName::What::Du), add(OutputName::What::Dv);
         // Type of an element, array length, and whether it varies: the surface's kernel takes it as an input with derivatives.
         int length = p.type.array ? std::max(1, p.type.array) : 0;
         const auto& given = b.displacement->parameters.strings;
         if (const auto open = given.find(rsl::lengthParameter(p.name)); p.open && open != given.end())
             length = std::atoi(open->second.c_str());
-        told->parameters.strings[rsl::InputName::displacement(p.name).text()] =
+        extended->parameters.strings[rsl::InputName::displacement(p.name).text()] =
             rsl::HeardOutput{int(ShaderValue::kindOf(p.type.base)), length, p.storage == rsl::Storage::Varying}.text();
     }
     if (outputs.size() == left.size()) return;
     bindDisplacement(b, displacementVarying, outputs);
     b.displacementTells = b.displacement != nullptr;
     if (!b.displacementTells) return;
-    InstanceRef& known = told_[{b.surface.get(), b.displacement.get()}];
-    if (!known) known = told;
+    InstanceRef& known = extended_[{b.surface.get(), b.displacement.get()}];
+    if (!known) known = extended;
     b.surface = known;
     asked_.pop_back();
     bindSurface(b, varying);

@@ -75,8 +75,9 @@ private:
     bool path_ = false;
     InstanceRef fallback_;
     std::map<std::tuple<const scene::ShaderCall*, int, bool>, InstanceRef>
-        instances_;                                                      ///< by kind, and by how derivatives are computed
-    std::map<std::pair<const void*, const void*>, InstanceRef> told_;    ///< surfaces with the outputs of a displacement; by both
+        instances_; ///< by kind, and by how derivatives are computed
+    std::map<std::pair<const void*, const void*>, InstanceRef>
+        extended_;                                                       ///< surfaces with the outputs of a displacement; by both
     std::map<const void*, InstanceRef> quiet_;                           ///< by the original displacement
     std::vector<InstanceRef> kept_;                                      ///< keeps instances whose addresses are keys
     std::map<std::pair<const void*, std::string>, InstanceRef> volumes_; ///< by the scene's shader and its overrides

@@ -26,8 +26,8 @@ void WorldImpl::numberShapes() {
     for (const geometry::ShapeRef& s : shapes_) {
         const std::string part = scene::partOf(s->attributes());
         uint64_t key = 0;
-        for (const char c : part) key = render::mix64(key ^ uint64_t(uint8_t(c)));
-        keysOfShapes_.push_back(part.empty() ? within[part]++ : uint32_t(render::mix64(key + within[part]++)));
+        for (const char c : part) key = mix64(key ^ uint64_t(uint8_t(c)));
+        keysOfShapes_.push_back(part.empty() ? within[part]++ : uint32_t(mix64(key + within[part]++)));
     }
 }
 

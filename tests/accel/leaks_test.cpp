@@ -307,7 +307,7 @@ TEST(Leaks, WhatLeavesAConvexFormDoesNotMeetItAgain) {
                 r.org = Vec3(transformPoint(w.placeAt(r.time), form.inside));
                 r.dir = Vec3(rng.ball());
                 Hit h;
-                if (!w.accel->intersect(r, h)) continue; // a leak, told above
+                if (!w.accel->intersect(r, h)) continue; // a leak, reported above
                 SurfacePoint p;
                 const HitRef ref{h.prim, h.b1, h.b2, &p, r.time};
                 w.shapes[h.shape]->points({&ref, 1}, kNeedAll);

@@ -4,6 +4,7 @@
 #include <fstream>
 #include <gtest/gtest.h>
 #include <map>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -13,7 +14,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-// Room -> folders it may include besides itself. "rsl" is one folder to the outside; inside it front < ir, passes < jit.
+// Folder -> folders it may include besides itself. "rsl" is one folder to the outside; inside it front < ir, passes < jit.
 const std::map<std::string, std::set<std::string>> kAllowed = {
     {"base", {}},
     {"shadeops", {"base"}},
@@ -55,35 +56,10 @@ const std::map<std::string, std::set<std::string>> kAllowed = {
 
 // Header prefix -> the only folders that may include it.
 const std::map<std::string, std::set<std::string>> kForeign = {
-    {"llvm", {"rsl/jit"}},
-    {"llvm-c", {"rsl/jit"}},
-    {"embree3", {}},
-    {"OpenImageIO", {"texture"}},
-    {"opensubdiv", {"geometry"}},
-    {"OpenEXR", {"display"}},
-    {"png.h", {"display"}},
-    {"tiffio.h", {"display"}},
-    {"jpeglib.h", {"display"}},
-    {"CLI", {"cli", "python"}},
-    {"pybind11", {"python"}},
-    {"boost", {"view"}},
-    {"xxhash.h", {"base"}},
-    {"Imath", {"base"}},
-    {"llvm", {"rsl/jit"}},
-    {"llvm-c", {"rsl/jit"}},
-    {"embree3", {}},
-    {"OpenImageIO", {"texture"}},
-    {"opensubdiv", {"geometry"}},
-    {"OpenEXR", {"display"}},
-    {"png.h", {"display"}},
-    {"tiffio.h", {"display"}},
-    {"jpeglib.h", {"display"}},
-    {"CLI", {"cli"}},
-    {"boost", {"view"}},
-    {"xxhash.h", {"base"}},
-    {"Imath", {"base"}},
-    {"assimp", {"models"}},
-    {"draco", {}},
+    {"llvm", {"rsl/jit"}},        {"llvm-c", {"rsl/jit"}},    {"embree3", {}},          {"OpenImageIO", {"texture"}},
+    {"opensubdiv", {"geometry"}}, {"OpenEXR", {"display"}},   {"png.h", {"display"}},   {"tiffio.h", {"display"}},
+    {"jpeglib.h", {"display"}},   {"CLI", {"cli", "python"}}, {"pybind11", {"python"}}, {"boost", {"view"}},
+    {"xxhash.h", {"base"}},       {"Imath", {"base"}},        {"assimp", {"models"}},   {"draco", {}},
     {"tiny_gltf.h", {"models"}},
 };
 
@@ -117,6 +93,43 @@ TEST(Folders, IncludeTable) {
         }
     }
     EXPECT_GT(files, 8);
+}
+
+/// A line of a block that only declares names of another folder.
+bool declaresNames(const std::string& line) {
+    static const std::regex pattern("\\s*(//.*|((class|struct|enum class) \\w+( : \\w+)?;.*)|(using namespace .*))?");
+    return std::regex_match(line, pattern);
+}
+
+// docs/architecture.md: the namespace of a folder is its name; that of base is alpenglow itself. Limits of every folder are in
+// alpenglow::limits, so that a limit is found without knowing who reads it.
+TEST(Folders, NamespaceIsFolder) {
+    const fs::path src = fs::path(ALPENGLOW_SOURCE_DIR) / "src";
+    const std::regex begins("namespace (alpenglow[\\w:]*) \\{");
+    int blocks = 0;
+    for (const auto& e : fs::recursive_directory_iterator(src)) {
+        const std::string ext = e.path().extension().string();
+        if (ext != ".cpp" && ext != ".h" && ext != ".inc") continue;
+        const std::string relative = fs::relative(e.path(), src).string(), folder = relative.substr(0, relative.find('/'));
+        const std::string own = folder == "base" ? "alpenglow" : "alpenglow::" + folder;
+        std::ifstream in(e.path());
+        std::string line, foreign; // the namespace of another folder that the line is in
+        for (int n = 1; std::getline(in, line); ++n) {
+            if (!foreign.empty()) {
+                if (line.starts_with("}")) foreign.clear();
+                else EXPECT_TRUE(declaresNames(line)) << relative << ":" << n << ": defined in " << foreign << ", not in " << own;
+            }
+            std::smatch m;
+            if (!std::regex_match(line, m, begins)) continue;
+            ++blocks;
+            const std::string name = m[1];
+            const bool limits = name == "alpenglow::limits" && e.path().filename() == "limits.h";
+            const bool nested =
+                name.starts_with(own + "::") && (folder != "base" || !fs::exists(src / name.substr(own.size() + 2)));
+            if (name != own && !nested && !limits) foreign = name;
+        }
+    }
+    EXPECT_GT(blocks, 900);
 }
 
 // A world is immutable once it is built: threads read it without locks.

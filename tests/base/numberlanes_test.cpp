@@ -1,11 +1,11 @@
-// Numbers in lanes are those that are drawn one by one, at every width, whoever is asked beside them.
+// Numbers in lanes are those that are drawn one by one, at every width, whoever else is asked.
 #include "base/numberlanes.h"
 #include <gtest/gtest.h>
 #include <vector>
 
 namespace numberlanes_test {
 
-using namespace alpenglow::render;
+using namespace alpenglow;
 
 namespace {
 

@@ -197,7 +197,7 @@ TEST_F(CErrors, ATextInThePlaceOfAnAddress) {
     EXPECT_NE(text("x.rib").find(R"("string d" ["off"])"), std::string::npos) << text("x.rib");
 }
 
-// A count that is far too large is told where the array ends in what cannot be read.
+// A count that is far too large is reported where the array ends in what cannot be read.
 TEST_F(CErrors, CountsBeyondTheArray) {
     const size_t page = size_t(sysconf(_SC_PAGESIZE));
     void* one = mmap(nullptr, 2 * page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);

@@ -30,7 +30,7 @@ protected:
     }
     void TearDown() override { std::filesystem::remove_all(dir); }
     void write(const std::string& name, const std::string& text) const { std::ofstream(dir / name, std::ios::binary) << text; }
-    /// What the program writes to standard output; its errors go where the shell is told.
+    /// What the program writes to standard output; its errors go where the shell sends them.
     std::string run(const std::string& arguments, const std::string& redirected) {
         const std::string command = "cd '" + dir.string() + "' && '" + ALPENGLOW_PROGRAM "' " + arguments + " " + redirected;
         std::string out;

@@ -316,11 +316,11 @@ TEST_F(Server, LimitOnDocumentsAndDiagnostics) {
     const auto all = run();
     EXPECT_EQ(published(all, "a0.sl").size(), size_t(alpenglow::limits::kServerDiagnostics));
     const std::string last = uri("a" + std::to_string(alpenglow::limits::kServerDocuments) + ".sl");
-    int told = 0;
+    int count = 0;
     for (const Json& j : all)
-        told += j.value("method", "") == "window/logMessage" &&
-                j["params"]["message"].get<std::string>().find(last) != std::string::npos;
-    EXPECT_EQ(told, 1);
+        count += j.value("method", "") == "window/logMessage" &&
+                 j["params"]["message"].get<std::string>().find(last) != std::string::npos;
+    EXPECT_EQ(count, 1);
     EXPECT_EQ(status, 0);
 }
 

@@ -1,4 +1,4 @@
-// alpenglow model.ply and model.obj: framed, lit, and damaged ones told.
+// alpenglow model.ply and model.obj: framed, lit, and damaged ones reported.
 #include "command_folder.h"
 #include "display/imageio.h"
 #include <cmath>

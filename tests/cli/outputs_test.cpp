@@ -174,7 +174,7 @@ TEST_F(Outputs, ASingleFrameHasThePlainName) {
     EXPECT_TRUE(read("two.0009.exr") == read("by.0009.exr"));
     for (const char* k : {"4", "9"}) EXPECT_EQ(render(std::string("-o list.exr --frames ") + k + " two.rib"), 0) << err;
     EXPECT_TRUE(has("list.0004.exr") && has("list.0009.exr") && !has("list.exr")); // whatever is listed
-    // The frame of another file is a second one, too; of the same number it is told apart.
+    // The frame of another file is a second one, too; of the same number it is distinguished.
     write("a.rib", "Format 16 12 1\n" + frame);
     EXPECT_EQ(render("-o files.png a.rib a.rib"), 0) << err;
     EXPECT_TRUE(has("files.0004.png") && has("files.0004.0004.png") && !has("files.png"));

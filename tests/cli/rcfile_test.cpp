@@ -1,4 +1,4 @@
-// .alpenglowrc and the environment variables of other renderers: where they are looked for, what they may do, what is told.
+// .alpenglowrc and the environment variables of other renderers: where they are looked for, what they may do, what is reported.
 #include "command_folder.h"
 #include <fstream>
 #include <nlohmann/json.hpp>

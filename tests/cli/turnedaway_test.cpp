@@ -57,7 +57,7 @@ TEST_F(FlippedNormals, WhatIsRightOrNotBlackIsNotSaid) {
 }
 
 // A ball that looks into itself is black under the brightest sky, which is not what its author meant. What faces the viewer, lies
-// open or refracts is told nothing.
+// open or refracts gets no note.
 TEST_F(FlippedNormals, WhatLooksForLightInsideOfItself) {
     const std::string sky = "LightSource \"envlight\" 1\n", turned = sky + "ReverseOrientation\n" + ball;
     const std::string gathers = "float deep = 0; rayinfo(\"depth\", deep); if (deep == 0) { gather(\"illuminance\", P, n, PI / "

@@ -1,4 +1,4 @@
-// Scenes that come through pipes: the program waits for their writer, and ends when it is told to.
+// Scenes that come through pipes: the program waits for their writer, and ends when it is asked to.
 #include "command_folder.h"
 #include <sys/stat.h>
 #include <unistd.h>

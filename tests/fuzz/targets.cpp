@@ -47,7 +47,7 @@ std::vector<std::string> ribWords() {
 
 std::vector<std::string> slWords() {
     std::vector<std::string> words;
-    for (const rsl::Shadeop& s : rsl::shadeops()) words.push_back(s.name);
+    for (const shadeops::Shadeop& s : shadeops::allShadeops()) words.push_back(s.name);
     for (const char* w : {"(",          ")",         "{",        "}",         ";",
                           ",",          "=",         "+=",       "[",         "]",
                           "\"",         ".",         "^",        "?",         ":",
@@ -71,8 +71,8 @@ std::vector<std::string> slWords() {
 
 Seeds examplesOfShadeops() {
     Seeds all;
-    for (const rsl::Shadeop& s : rsl::shadeops())
-        for (const rsl::Example& e : s.examples)
+    for (const shadeops::Shadeop& s : shadeops::allShadeops())
+        for (const shadeops::Example& e : s.examples)
             if (e.setup.empty()) all.push_back(e.expression);
     return all;
 }

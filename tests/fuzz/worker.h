@@ -14,7 +14,7 @@ struct Limits {
 
 struct Verdict {
     Outcome outcome = Outcome::Ok;
-    std::string signature; ///< the same for the same defect, as far as that can be told
+    std::string signature; ///< the same for the same defect, as far as that is known
     std::string messages;  ///< the end of what the input made the program say
 };
 
@@ -28,7 +28,7 @@ struct Tally {
     size_t runs = 0;
 };
 /// Inputs first, first+1, ... of `source` in children of many inputs each, until `last` or until the clock (seconds since the
-/// program began) reaches `end`. Of each that is not Ok or Refused `found` is told, with its number.
+/// program began) reaches `end`. Of each that is not Ok or Refused `found` is called, with its number.
 Tally runMany(const Target&, const Source&, size_t first, size_t last, double end, const Limits&,
               const std::function<void(size_t, const Verdict&)>& found);
 

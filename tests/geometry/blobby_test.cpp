@@ -439,7 +439,7 @@ TEST(Blobby, FaultyCodeIsSaid) {
     EXPECT_FALSE(
         build(blobby(1, {1001, 0}, {std::vector<float>(16, 0)}), Matrix(), diag)); // no inverse: no field, nothing to draw
     EXPECT_EQ(diag.warnings(), 2);
-    Diagnostics missing; // a depth map that is not there: told, and the rest is drawn
+    Diagnostics missing; // a depth map that is not there: reported, and the rest is drawn
     EXPECT_TRUE(build(blobby(2, {1001, 0, 1003, 0, 16, 0, 2, 0, 1}, {b, {1, 1, 1, 1}}, {"/none.z"}), Matrix(), missing));
     EXPECT_EQ(missing.errors(), 1);
 }

@@ -245,7 +245,7 @@ TEST(TraceDistributions, Unshadowed) {
                    "would behind the card");
     }
 }
-// Rays begin where they are told to; a bias moves them on.
+// Rays begin where the call says; a bias moves them on.
 TEST(TraceDistributions, WhereRaysBegin) {
     writeShader("far", R"(surface far(vector off = vector(0, 0, 0); float by = -1;) {
     float d = 0;

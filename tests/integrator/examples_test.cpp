@@ -73,7 +73,7 @@ const std::map<std::string, Stage>& stages() {
 }
 
 /// The type that the expression has, as `alpenglow eval` chooses it.
-std::string typeOf(const rsl::Example& e, bool light) {
+std::string typeOf(const shadeops::Example& e, bool light) {
     for (const std::string type : {"float", "color", "point", "string"}) {
         Diagnostics quiet;
         const std::string text = std::string(light ? "light" : "surface") + " probe(output varying " + type +
@@ -94,8 +94,8 @@ TEST(Examples, ThoseThatNeedAScene) {
     oneColour("bumps.tex", {.5f, .5f, .5f});
     std::map<std::string, int> used;
     int ran = 0;
-    for (const rsl::Shadeop& op : rsl::shadeops())
-        for (const rsl::Example& e : op.examples) {
+    for (const shadeops::Shadeop& op : shadeops::allShadeops())
+        for (const shadeops::Example& e : op.examples) {
             if (e.when.empty()) continue;
             SCOPED_TRACE(op.name + " when " + e.when + ": " + e.setup + " " + e.expression);
             const auto found = stages().find(e.when);

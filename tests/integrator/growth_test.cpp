@@ -214,7 +214,7 @@ TEST(Growth, ManyRaysOfAWaitingShaderStayFinite) {
     EXPECT_NEAR(m.mean(), 1, 4.753 * m.se() + .0006);
     EXPECT_LT(m.se(), .1);
 }
-/// What the process has of the machine's memory, in bytes; 0 where that is not told.
+/// What the process has of the machine's memory, in bytes; 0 where that is not known.
 size_t residentBytes() {
     std::ifstream f("/proc/self/statm");
     size_t all = 0, resident = 0;

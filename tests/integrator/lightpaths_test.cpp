@@ -1,4 +1,4 @@
-// Outputs by light path: their parts are Ci's own light, told apart by what happened to it.
+// Outputs by light path: their parts are Ci's own light, separated by what happened to it.
 #include "integrator/box.h"
 #include "integrator/floorscene.h"
 #include "scene/lightpaths.h"

@@ -106,7 +106,7 @@ TEST(Lights, Categories) {
         }
     }
 }
-// What one kernel is told of its lights may not depend on the points that share its batch.
+// What one kernel is given of its lights may not depend on the points that share its batch.
 TEST(Lights, NonDiffuseAndNonSpecular) {
     for (bool nonDiffuse : {false, true}) {
         writeShader("halfway", std::string("light halfway(output float ") + (nonDiffuse ? "__nondiffuse" : "__nonspecular") +

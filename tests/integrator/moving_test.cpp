@@ -102,7 +102,7 @@ TEST(SurfaceMovesP, NotByRays) {
             << s.messages();
     }
 }
-// What lights are told decides: the square is where the sum of their parameters puts it, and of those in whose cone it lies.
+// What lights are given decides: the square is where the sum of their parameters puts it, and of those in whose cone it lies.
 TEST(SurfaceMovesP, ByLightsThatAreKnown) {
     writeShader("bysource", "surface bysource() { float by = 0, sum = 0; illuminance(P) { lightsource(\"intensity\", by); sum += "
                             "by; } P -= vector \"world\" (0, 0, sum); Oi = 1; Ci = color(zcomp(P)); }\n");

@@ -72,7 +72,7 @@ TEST(NoDirection, TraceOfNowhereIsBlack) {
         EXPECT_EQ(shown("nd_refract", "Ci = trace(P, none);", h), Color(0)) << int(h);
         EXPECT_EQ(shown("nd_sky", "Ci = trace(P, none);", h, "LightSource \"envlight\" \"sky\" \"intensity\" 1\n"), Color(0))
             << int(h);
-        // A shader that waits for the ray, and what it is told.
+        // A shader that waits for the ray, and what it is given.
         const Color waits =
             shown("nd_waits", "c = trace(P, none, d); Ci = color(comp(c, 0) > 0.1 ? 1 : 0.5, d > 1e30 ? 1 : 0, 1);", h);
         EXPECT_EQ(waits, Color(.5f, 1, 1)) << int(h);

@@ -200,7 +200,7 @@ TEST(Atmosphere, ScalesRequests) {
     EXPECT_NEAR(d.y, 2 / 8., 1e-5);
     EXPECT_EQ(looped.messages().find("not affine"), std::string::npos) << looped.messages();
 }
-// The proof holds for what ships; a shader it cannot hold for is told apart.
+// The proof holds for what ships; a shader it cannot hold for is recognised.
 TEST(Atmosphere, SlopeIsProved) {
     writeShader("squarefog", "volume squarefog() { Ci = Ci * Ci; Oi = 1; }\n");
     writeShader("channelfog", "volume channelfog() { Ci = comp(Ci, 0); Oi = 1; }\n");

@@ -143,7 +143,7 @@ TEST(Outputs, AnArrayAndOneOfItsElements) {
         }
 }
 
-// What a renderer says of itself, whole and in parts, in a surface; a value of another type or length is not told.
+// What a renderer says of itself, whole and in parts, in a surface; a value of another type or length is not given.
 TEST(Outputs, WhatTheRendererSaysOfItself) {
     writeShader("whoami", R"(surface whoami() {
     string name = "", text = ""; float v[4] = {9, 9, 9, 9}, one = 5, three[3] = {8, 8, 8};

@@ -211,12 +211,13 @@ TEST(RaySets, DistancesTypesAndLabels) {
                 "type of transmission");
     writeShader("labelled", "surface labelled() { string l = \"\"; rayinfo(\"label\", l); Oi = (l == \"thin\") ? .25 : 1; Ci = "
                             "(l == \"red\") ? color(1, 0, 0) : color(0, 0, 1); }\n");
-    const std::string told = pane(1, "Surface \"labelled\"");
-    expectColor(shows("label0", "Ci = trace(P, up, \"label\", \"red\");", told), {1, 0, 0}, "label");
-    expectColor(shows("label1", "Ci = environment(\"raytrace\", up, \"label\", \"red\");", told), {1, 0, 0},
+    const std::string labelled = pane(1, "Surface \"labelled\"");
+    expectColor(shows("label0", "Ci = trace(P, up, \"label\", \"red\");", labelled), {1, 0, 0}, "label");
+    expectColor(shows("label1", "Ci = environment(\"raytrace\", up, \"label\", \"red\");", labelled), {1, 0, 0},
                 "label of environment");
-    expectColor(shows("label2", "Ci = transmission(P, far, \"label\", \"thin\");", told), Color(.75f), "label of transmission");
-    expectColor(shows("label3", "string w = (xcomp(P) < 50) ? \"red\" : \"x\"; Ci = trace(P, up, \"label\", w);", told),
+    expectColor(shows("label2", "Ci = transmission(P, far, \"label\", \"thin\");", labelled), Color(.75f),
+                "label of transmission");
+    expectColor(shows("label3", "string w = (xcomp(P) < 50) ? \"red\" : \"x\"; Ci = trace(P, up, \"label\", w);", labelled),
                 {1, 0, 0}, "computed label");
 }
 

@@ -455,7 +455,7 @@ TEST_F(Subsurface, WhatEntersMayBeMadeOfLight) {
     EXPECT_LT(m.se(), .03 * whole);
 }
 
-// A square of it would have to wait for the light: the lights say what enters then, and the user is told why.
+// A square of it would have to wait for the light: the lights say what enters then, and a message says why.
 TEST_F(Subsurface, WhatEntersDoesNotWait) {
     writeShader("squared", "surface squared() { Oi = 1; color d = diffuse(normalize(N));\n"
                            "    Ci = subsurface(P, N, \"scattering\", .8, \"absorption\", .2, \"ior\", 1.3, \"scale\", 20,\n"

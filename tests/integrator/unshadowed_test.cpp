@@ -19,8 +19,8 @@ const std::string kLamp = "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\
 const CameraRay kBelow = rayTo({.3f, .4f, -.4f}, {0, 0, 0});
 
 /// The mean of an output of trace(from, straight up, more).
-Moments told(const std::string& what, const std::string& from, const std::string& more, const std::string& others, Hider h,
-             int n) {
+Moments arriving(const std::string& what, const std::string& from, const std::string& more, const std::string& others, Hider h,
+                 int n) {
     static int number = 0;
     writeShader("unlamp", "light unlamp() { illuminate(P, N, PI) Cl = 5; }\n");
     const std::string name = "untold" + std::to_string(number++), map = writeMap("unmap.exr", 4, 2, Color(1));
@@ -36,10 +36,10 @@ constexpr double kPart = .8 * .8 / (.8 * .8 + 4); ///< of the hemisphere that th
 
 TEST(Unshadowed, AreaLightsOfMirrorRays) {
     for (const Hider h : {Hider::Path, Hider::Raytrace}) {
-        EXPECT_NEAR(told("unshadowedarealight", "P", "", "", h, 4).mean(), 5, 1e-5);
-        EXPECT_NEAR(told("unshadowedarealight", "P", "", kCard, h, 4).mean(), 5, 1e-5);
-        EXPECT_NEAR(told("unshadowedarealight", "P + vector \"world\" (.7, 0, 0)", "", kCard, h, 4).mean(), 5, 1e-5);
-        EXPECT_EQ(told("unshadowedarealight", "P + vector \"world\" (.9, 0, 0)", "", kCard, h, 4).mean(), 0);
+        EXPECT_NEAR(arriving("unshadowedarealight", "P", "", "", h, 4).mean(), 5, 1e-5);
+        EXPECT_NEAR(arriving("unshadowedarealight", "P", "", kCard, h, 4).mean(), 5, 1e-5);
+        EXPECT_NEAR(arriving("unshadowedarealight", "P + vector \"world\" (.7, 0, 0)", "", kCard, h, 4).mean(), 5, 1e-5);
+        EXPECT_EQ(arriving("unshadowedarealight", "P + vector \"world\" (.9, 0, 0)", "", kCard, h, 4).mean(), 0);
     }
 }
 
@@ -47,10 +47,10 @@ TEST(Unshadowed, AreaLightsOfRaysFromElsewhere) {
     for (const Hider h : {Hider::Path, Hider::Raytrace})
         for (const std::string& card : {std::string(), kCard}) {
             const double up = .64 / (.64 + 1.5 * 1.5); // half a unit above the floor
-            const Moments m = told("unshadowedarealight", "P + vector \"world\" (0, .5, 0)", kCosine, card, h, samples(8000));
+            const Moments m = arriving("unshadowedarealight", "P + vector \"world\" (0, .5, 0)", kCosine, card, h, samples(8000));
             EXPECT_NEAR(m.mean(), 5 * up, kZ * m.se());
             EXPECT_LE(m.se(), .2 * up);
-            const Moments here = told("unshadowedarealight", "P", kCosine, card, h, samples(8000));
+            const Moments here = arriving("unshadowedarealight", "P", kCosine, card, h, samples(8000));
             EXPECT_NEAR(here.mean(), 5 * kPart, kZ * here.se());
         }
 }
@@ -58,9 +58,9 @@ TEST(Unshadowed, AreaLightsOfRaysFromElsewhere) {
 TEST(Unshadowed, AreaLightsBlockTheMap) {
     for (const Hider h : {Hider::Path, Hider::Raytrace})
         for (const std::string& card : {std::string(), kCard}) {
-            EXPECT_EQ(told("unshadowedenvironment", "P", "", card, h, 4).mean(), 0);
-            EXPECT_NEAR(told("unshadowedenvironment", "P + vector \"world\" (.9, 0, 0)", "", card, h, 4).mean(), 1, 1e-4);
-            const Moments m = told("unshadowedenvironment", "P", kCosine, card, h, samples(8000));
+            EXPECT_EQ(arriving("unshadowedenvironment", "P", "", card, h, 4).mean(), 0);
+            EXPECT_NEAR(arriving("unshadowedenvironment", "P + vector \"world\" (.9, 0, 0)", "", card, h, 4).mean(), 1, 1e-4);
+            const Moments m = arriving("unshadowedenvironment", "P", kCosine, card, h, samples(8000));
             EXPECT_NEAR(m.mean(), 1 - kPart, kZ * m.se());
             EXPECT_LE(m.se(), .02);
         }

@@ -94,7 +94,8 @@ std::vector<std::string> literals(const std::string& code) {
 /// The shaders that tests of rendered scenes write.
 Calls ofRenderedTests() {
     Calls calls;
-    for (const char* folder : {"integrator", "render", "shading", "plugins", "language", "cli", "pointcloud", "ptex"})
+    for (const char* folder :
+         {"world", "services", "integrator", "render", "shading", "plugins", "language", "cli", "pointcloud", "ptex"})
         for (const auto& entry : fs::directory_iterator(fs::path(ALPENGLOW_SOURCE_DIR) / "tests" / folder)) {
             if (!entry.path().string().ends_with("_test.cpp")) continue;
             std::ifstream in(entry.path());
@@ -112,7 +113,7 @@ TEST(Completeness, EverySignatureAndEveryOptionalParameterIsCalled) {
     const Calls snippets = ofSnippets(), rendered = ofRenderedTests();
     int missing = 0, all = 0;
     std::string list;
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         if (internal(op)) continue; // their values are those of the shadeop that calls them
         for (const Signature& s : op.signatures) {
             ++all;
@@ -161,7 +162,7 @@ TEST(Completeness, EveryShadeopIsInAProgramThatIsRefusedForIt) {
         for (Bad& b : readErrors(f)) programs.push_back(std::move(b));
     int missing = 0;
     std::string list;
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         if (internal(op)) continue;
         if (std::any_of(programs.begin(), programs.end(), [&](const Bad& b) { return standsIn(b, op.name); })) continue;
         ++missing;

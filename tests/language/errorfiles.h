@@ -1,4 +1,4 @@
-// The files of erroneous programs, taken apart. What stands in them is told in errorplaces_test.cpp.
+// The files of erroneous programs, taken apart. What stands in them is described in errorplaces_test.cpp.
 #pragma once
 #include <algorithm>
 #include <cctype>

@@ -139,7 +139,7 @@ struct Measured {
 
 std::vector<Measured> table() {
     std::vector<Measured> all;
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         if (op.name.rfind("__", 0) == 0 || elsewhere().count(op.name)) continue;
         const bool passes = op.derivative == DerivativeRule::Jet || op.derivative == DerivativeRule::Inherent ||
                             op.derivative == DerivativeRule::Gradient;
@@ -251,7 +251,7 @@ TEST(Slopes, OfEveryShadeopAreThoseOfItsValues) {
                 if (moves) met.insert(m.signature);
             });
     // Each signature must have been seen to move: what stays the same proves nothing.
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         const bool passes = op.derivative == DerivativeRule::Jet || op.derivative == DerivativeRule::Inherent ||
                             op.derivative == DerivativeRule::Gradient;
         if (op.name.rfind("__", 0) == 0 || !passes || op.lowering == Lowering::Unavailable || elsewhere().count(op.name))

@@ -102,9 +102,9 @@ TEST_F(Others, ReadsColladaWithCameraLightAndMaterial) {
         ++cameras;
         EXPECT_NEAR(at.z, 9, 1e-6);
         const Vec3d sight = transformVector(pose.world[size_t(n)], Vec3d(0, 0, -1));
-        EXPECT_NEAR(sight.z, -1, 1e-6);                            // Collada's cameras look along -z
-        const bool told = said.find("field of view") != said.npos; // assimp 5.2 does not read it
-        EXPECT_NEAR(m->cameras[0].yfov, told ? .8 : 2 * std::atan(.5), 1e-3);
+        EXPECT_NEAR(sight.z, -1, 1e-6);                               // Collada's cameras look along -z
+        const bool missing = said.find("field of view") != said.npos; // assimp 5.2 does not read it
+        EXPECT_NEAR(m->cameras[0].yfov, missing ? .8 : 2 * std::atan(.5), 1e-3);
     }
     EXPECT_EQ(meshes, 1);
     EXPECT_EQ(cameras, 1);

@@ -1,4 +1,4 @@
-// What is wrong with a model is left out and told; what is sound goes through the pipe of modules unchanged.
+// What is wrong with a model is left out and reported; what is sound goes through the pipe of modules unchanged.
 #include "models/check.h"
 #include "models/stream.h"
 #include <cmath>

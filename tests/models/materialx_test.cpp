@@ -141,7 +141,7 @@ TEST_F(Materialx, FaultsAreTold) {
     EXPECT_TRUE(has(said, "it has no material")) << said;
     shader(surface(""), "other");
     EXPECT_TRUE(has(said, "no material \"other\"")) << said;
-    // Circles of nodes, of graphs, and chains that are too deep: told, and the rest is there.
+    // Circles of nodes, of graphs, and chains that are too deep: reported, and the rest is there.
     EXPECT_NE(shader(R"(<add name="a" type="float"><input name="in1" type="float" nodename="a"/></add>)" +
                      surface(R"(<input name="base" type="float" nodename="a"/>)")),
               "");

@@ -16,7 +16,7 @@ using namespace alpenglow::photonmap;
 
 namespace {
 
-float number(uint64_t& state) { return render::unitFloat(uint32_t(render::mix64(++state) >> 32)); }
+float number(uint64_t& state) { return unitFloat(uint32_t(mix64(++state) >> 32)); }
 
 /// `count` photons that carry 1 together, evenly over the square from 0 to 1 of the plane y = 0; from above.
 std::vector<Photon> evenly(int count, uint64_t seed) {

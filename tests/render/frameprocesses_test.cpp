@@ -53,14 +53,14 @@ protected:
     }
     std::filesystem::path dir;
     std::vector<std::string> said;
-    Diagnostics told{[this](const Diagnostic& d) { said.push_back(d.message); }};
+    Diagnostics messages{[this](const Diagnostic& d) { said.push_back(d.message); }};
     const FrameProcesses::Writes nothing{{}, false, true};
 };
 
 } // namespace
 
 TEST_F(Processes, MessagesComeInTheOrderOfTheFrames) {
-    FrameProcesses p({.most = 3}, told);
+    FrameProcesses p({.most = 3}, messages);
     int taken = 0;
     p.setTake([&](const FrameResult& r) { taken += r.outcome.rendered; });
     p.say(message("before"));
@@ -69,7 +69,7 @@ TEST_F(Processes, MessagesComeInTheOrderOfTheFrames) {
         p.say(message("first", "key"));
     });
     p.say(message("between"));
-    frame(p, nothing, [&] { p.say(message("second", "key")); }); // said before: it is told once
+    frame(p, nothing, [&] { p.say(message("second", "key")); }); // said before: it is printed once
     frame(p, nothing, [&] {
         p.say(message("third"));
         make("third");
@@ -82,7 +82,7 @@ TEST_F(Processes, MessagesComeInTheOrderOfTheFrames) {
 
 // The second reads what the first writes, and the third what nobody does: so it is the third that lets the first end.
 TEST_F(Processes, AFrameWaitsForTheFilesOfEarlierOnesAlone) {
-    FrameProcesses p({.most = 3}, told);
+    FrameProcesses p({.most = 3}, messages);
     frame(p, {{(dir / "Map.TIF").string()}, false, true}, [&] {
         await("third");
         make("written");
@@ -101,7 +101,7 @@ TEST_F(Processes, AFrameWaitsForTheFilesOfEarlierOnesAlone) {
 
 // One whose files are not known yet may write any; once it has said that there are none, or is done, others go on.
 TEST_F(Processes, FilesThatAreNotKnownMayBeAny) {
-    FrameProcesses p({.most = 3}, told);
+    FrameProcesses p({.most = 3}, messages);
     for (const bool bakes : {false, true}) {
         std::filesystem::remove(dir / "second");
         std::filesystem::remove(dir / "done");
@@ -122,7 +122,7 @@ TEST_F(Processes, FilesThatAreNotKnownMayBeAny) {
 }
 
 TEST_F(Processes, ATurnComesWhenEarlierFramesAreDrawn) {
-    FrameProcesses p({.most = 3}, told);
+    FrameProcesses p({.most = 3}, messages);
     frame(p, nothing, [&] {
         await("third");
         make("first");
@@ -137,10 +137,10 @@ TEST_F(Processes, ATurnComesWhenEarlierFramesAreDrawn) {
     EXPECT_EQ(said, std::vector<std::string>{"behind"});
 }
 
-// What waits to be told is bounded: the first frame ends when the last that may be begun meanwhile has, and one more is begun
+// What waits to be printed is bounded: the first frame ends when the last that may be begun meanwhile has, and one more is begun
 // only then.
 TEST_F(Processes, NoMoreThanSoManyFramesAreAhead) {
-    FrameProcesses p({.most = 2}, told);
+    FrameProcesses p({.most = 2}, messages);
     const int ahead = limits::kFramesAhead * 2;
     int taken = 0;
     p.setTake([&](const FrameResult&) { ++taken; });
@@ -157,7 +157,7 @@ TEST_F(Processes, NoMoreThanSoManyFramesAreAhead) {
 
 // The system rounds to pages, which may be of 2 MB.
 TEST_F(Processes, MemoryIsTakenAtOnceUpToALimit) {
-    FrameProcesses p({.most = 2}, told);
+    FrameProcesses p({.most = 2}, messages);
     for (const size_t bytes : {size_t(0), size_t(64) << 20, 2 * limits::kHeapAtOnce})
         frame(p, nothing, [&] {
             const uint64_t before = ownBytes();
@@ -171,7 +171,7 @@ TEST_F(Processes, MemoryIsTakenAtOnceUpToALimit) {
 }
 
 TEST_F(Processes, AProcessThatEndsByItselfIsToldOf) {
-    FrameProcesses p({.most = 2}, told);
+    FrameProcesses p({.most = 2}, messages);
     Outcome all;
     p.setTake([&](const FrameResult& r) { all.add(r.outcome); });
     frame(p, nothing, [] { _exit(4); });
@@ -201,16 +201,16 @@ TEST(FrameRecords, ComeBackAsTheyWere) {
 
     FrameResult r;
     r.outcome.refused = 2;
-    r.told.emplace();
-    r.told->pictures = {{"p.exr", "openexr", {"r", "g"}}};
-    r.told->textures = {{"t.tif", 1, 2, 3}};
-    r.told->figures.rays = {{"camera", 5}, {"shadow", 6}};
-    r.told->figures.noise.noise = .25;
+    r.stats.emplace();
+    r.stats->pictures = {{"p.exr", "openexr", {"r", "g"}}};
+    r.stats->textures = {{"t.tif", 1, 2, 3}};
+    r.stats->figures.rays = {{"camera", 5}, {"shadow", 6}};
+    r.stats->figures.noise.noise = .25;
     FrameResult same;
     ASSERT_TRUE(unpack(packed(r), same));
     EXPECT_EQ(packed(same), packed(r));
-    EXPECT_EQ(same.told->figures.rays.at("shadow"), 6u);
-    EXPECT_EQ(same.told->pictures[0].channels[1], "g");
+    EXPECT_EQ(same.stats->figures.rays.at("shadow"), 6u);
+    EXPECT_EQ(same.stats->pictures[0].channels[1], "g");
     const std::string bytes = packed(r); // cut anywhere they are none
     for (size_t n = 0; n < bytes.size(); ++n) EXPECT_FALSE(unpack(bytes.substr(0, n), same)) << n;
 }

@@ -68,7 +68,7 @@ double edge(FilterKind k, double w, double t) {
 
 /// Of pixels of n samples with an edge at t: mean and variance of what they show, and what they tell of the latter.
 struct Spread {
-    double mean = 0, variance = 0, told = 0;
+    double mean = 0, variance = 0, estimated = 0;
 };
 Spread spreadOf(const PixelFilter& f, uint32_t n, int side, float t) {
     const Film film = filmOf(FilterSampler(f), n, side, [&](float x, float) { return x < t ? 1.0f : 0.0f; });
@@ -81,7 +81,7 @@ Spread spreadOf(const PixelFilter& f, uint32_t n, int side, float t) {
             squares += v * v / side / side;
             const ReplicaError e = replicaError(film, x, y);
             EXPECT_NEAR(e.mean, v, 1e-5);
-            s.told += e.se * e.se / side / side;
+            s.estimated += e.se * e.se / side / side;
         }
     s.variance = squares - s.mean * s.mean;
     return s;
@@ -130,7 +130,7 @@ TEST(SignedFilters, NoiseIsThatOfPixels) {
     for (const FilterKind k : {FilterKind::Mitchell, FilterKind::SeparableCatmullRom})
         for (const float t : {-0.9f, 0.0f, 0.7f}) {
             const Spread s = spreadOf({k, 4, 4}, 128, 24, t);
-            EXPECT_NEAR(s.told / s.variance, 1, 0.3) << filterName(k) << " " << t;
+            EXPECT_NEAR(s.estimated / s.variance, 1, 0.3) << filterName(k) << " " << t;
         }
 }
 

@@ -64,7 +64,7 @@ TEST(Depth, BlocksOfEachKind) {
     for (const auto& k : kinds) {
         auto c = readDeep("WorldBegin\n" + nested(kDeep, k.begin, kBall, k.end) + kBall + "WorldEnd\n");
         ASSERT_EQ(c->frame().primitives.size(), 2u) << k.name;
-        if (k.name != std::string("SolidBegin")) EXPECT_EQ(c->messages(), "") << k.name; // a ball beside parts is told
+        if (k.name != std::string("SolidBegin")) EXPECT_EQ(c->messages(), "") << k.name; // a ball among parts is reported
         EXPECT_EQ(c->primitive(1).attributes->color, Color(1, 1, 1)) << k.name;
         EXPECT_EQ(c->primitive(1).toWorld.first(), Matrix()) << k.name;
         EXPECT_TRUE(c->primitive(1).attributes->solid.empty()) << k.name;

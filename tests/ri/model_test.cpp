@@ -1,4 +1,4 @@
-// Files of polygons: what is in them is drawn, and what is wrong with them is told and costs no more than the file.
+// Files of polygons: what is in them is drawn, and what is wrong with them is reported and costs no more than the file.
 #include "base/limits.h"
 #include "base/srgb.h"
 #include "collect.h"

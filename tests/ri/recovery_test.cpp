@@ -233,7 +233,7 @@ TEST(Foreign, EachNameIsSaidOnce) {
     auto c = inWorld("Sphre 1\nSphre 2\nSphere 1 -1 1 360\nNotthis 1 2\nSphre 3\n");
     EXPECT_EQ(c->count(), 2u) << c->messages();
     EXPECT_EQ(c->frame().primitives.size(), 1u);
-    std::string many; // more different names than are told apart: the reporter's own bound holds
+    std::string many; // more different names than are distinguished: the reporter's own bound holds
     for (int i = 0; i < 2 * limits::kUnknownNames; ++i) many += "Q" + std::to_string(i) + "x 1\nQ0x 1\n";
     EXPECT_LE(inWorld(many)->count(), size_t(3 * limits::kUnknownNames) + 1);
 }

@@ -1,4 +1,4 @@
-// Attribute "user" and Option "user" in the graphics state; tests/integrator/userattributes_test.cpp has the shaders.
+// Attribute "user" and Option "user" in the graphics state; tests/services/userattributes_test.cpp has the shaders.
 #include "collect.h"
 
 namespace userattributes_test {

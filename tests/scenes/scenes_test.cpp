@@ -58,7 +58,7 @@ Measure compare(const display::Image& ours, const display::Image& theirs, int dx
     return m;
 }
 
-// Two ways of taking samples, told apart by fitting each published picture as a sum of finely rendered points near its edges
+// Two ways of taking samples, distinguished by fitting each published picture as a sum of finely rendered points near its edges
 // (docs/gallery.md): one unjittered sample in the middle of a pixel under a gaussian two pixels wide, or several under a
 // triangle. Their renderer's specular() has the exponent 1 / roughness.
 constexpr const char* kOneSample = "Option \"shade\" \"string specular\" \"rispec\"\nPixelFilter \"gaussian\" 2 2\nPixelSamples "

@@ -10,7 +10,7 @@
 
 namespace bsdf_test {
 
-using namespace alpenglow::rsl;
+using namespace alpenglow::shadeops;
 
 namespace {
 

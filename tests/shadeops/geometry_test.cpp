@@ -10,7 +10,7 @@
 
 namespace geometry_test {
 
-using namespace alpenglow::rsl;
+using namespace alpenglow::shadeops;
 
 namespace {
 

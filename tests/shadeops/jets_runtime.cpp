@@ -4,7 +4,7 @@
 #include "shadeops/runtime.h"
 #include <map>
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 
 bool evaluateRuntimeJet(std::string_view symbol, int order, const float* in, int inCount, float* out, int outCount) {
     static constexpr int kParts[] = {1, 3, 6};
@@ -27,4 +27,4 @@ bool evaluateRuntimeJet(std::string_view symbol, int order, const float* in, int
     return true;
 }
 
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops

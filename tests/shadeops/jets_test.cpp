@@ -13,7 +13,7 @@
 
 namespace jets_test {
 
-using namespace alpenglow::rsl;
+using namespace alpenglow::shadeops;
 
 namespace {
 

@@ -7,7 +7,7 @@
 #define AL_INLINE static inline __attribute__((unused))
 #define AL_MEMBER inline
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 typedef double vf __attribute__((ext_vector_type(4)));
 typedef int vi __attribute__((ext_vector_type(4)));
@@ -83,4 +83,4 @@ inline vf powLanes(vf x, vf y) {
     return map2(x, y, [](double a, double b) { return a < 0 && b != std::floor(b) ? 0.0 : std::pow(a, b); });
 }
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE

@@ -16,14 +16,14 @@
 
 namespace registry_test {
 
-using namespace alpenglow::rsl;
+using namespace alpenglow::shadeops;
 
 namespace {
 
 int floatsOf(const Type& t) { return componentCount(t.base); }
 
 TEST(Registry, SortedAndFound) {
-    const auto all = shadeops();
+    const auto all = allShadeops();
     ASSERT_GT(all.size(), 100u);
     for (size_t i = 1; i < all.size(); ++i) EXPECT_LT(all[i - 1].name, all[i].name);
     for (const Shadeop& op : all) EXPECT_EQ(findShadeop(op.name), &op);
@@ -32,7 +32,7 @@ TEST(Registry, SortedAndFound) {
 }
 
 TEST(Registry, EveryDescriptorIsWhole) {
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         EXPECT_FALSE(op.doc.empty()) << op.name;
         EXPECT_FALSE(op.source.empty()) << op.name;
         EXPECT_FALSE(op.section.empty()) << op.name;
@@ -51,7 +51,7 @@ TEST(Registry, EveryDescriptorIsWhole) {
 
 TEST(Registry, RuntimeSignaturesMatchTheirSymbols) {
     int checked = 0;
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         for (const Signature& s : op.signatures) {
             ASSERT_EQ(op.lowering == Lowering::Runtime, !s.symbol.empty()) << s.text;
             if (s.symbol.empty()) continue;
@@ -225,7 +225,7 @@ private:
 
 TEST(Registry, ExamplesAreTrue) {
     int ran = 0;
-    for (const Shadeop& op : shadeops())
+    for (const Shadeop& op : allShadeops())
         for (const Example& e : op.examples) {
             EXPECT_FALSE(e.value.empty()) << e.expression;
             if (op.lowering != Lowering::Runtime || !e.setup.empty() || !e.when.empty()) continue; // `alpenglow eval` runs these
@@ -244,7 +244,7 @@ TEST(Registry, ExamplesAreTrue) {
 }
 
 TEST(Registry, RuntimeShadeopsHaveExamples) {
-    for (const Shadeop& op : shadeops())
+    for (const Shadeop& op : allShadeops())
         if (op.lowering == Lowering::Runtime && op.name.rfind("set", 0) != 0 && op.name.rfind("__", 0) != 0 &&
             op.name != "fresnel")
             EXPECT_FALSE(op.examples.empty()) << op.name;

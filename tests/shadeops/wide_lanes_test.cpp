@@ -17,7 +17,7 @@
 
 namespace wide_lanes_test {
 
-using namespace alpenglow::rsl;
+using namespace alpenglow::shadeops;
 
 namespace {
 

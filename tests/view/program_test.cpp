@@ -75,7 +75,7 @@ TEST_F(ViewProgram, ServesItsPageToWhoKnowsTheToken) {
         const std::string a = ask(get(port, p));
         EXPECT_EQ(statusOf(a), 403) << p;
         EXPECT_NE(bodyOf(a).find("token"), a.npos);
-        EXPECT_EQ(a.find(token), a.npos); // nobody is told it
+        EXPECT_EQ(a.find(token), a.npos); // nobody sees it
     }
 }
 

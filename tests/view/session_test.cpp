@@ -309,7 +309,7 @@ TEST_F(ViewSession, GoesOnWhenASceneDoesNotFitIntoMemory) {
     EXPECT_EQ(difference(*done()->planes[0].image, rendered(scene)), 0);
 }
 
-// Who has a picture is told by its tag, which no later one may have, wherever it lies in memory.
+// Who has a picture is known by its tag, which no later one may have, wherever it lies in memory.
 TEST_F(ViewSession, EachPictureHasATagOfItsOwn) {
     ASSERT_TRUE(open(false, {{"continuous", true}}));
     std::string fault;

@@ -4,7 +4,7 @@
 #include "shadeops/call.h"
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
-using namespace rsl::AL_NAMESPACE;
+using namespace shadeops::AL_NAMESPACE;
 
 using Direction = Triple<vf>;
 

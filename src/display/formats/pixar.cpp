@@ -103,7 +103,7 @@ private:
         return true;
     }
     /// Whether uncompressed levels end exactly at the end of the file, as in version 2. No uncompressed file of version 3 is
-    /// known: this tells whether it has the layout of version 2, or directories.
+    /// known: this says whether it has the layout of version 2, or directories.
     bool rawToTheEnd() const {
         uint64_t end = 0;
         for (int c = 0; c < h_.channels; ++c)

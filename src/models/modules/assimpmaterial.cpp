@@ -110,8 +110,8 @@ void AssimpReader::material(const aiMaterial& m, Material& to) {
     number(m, AI_MATKEY_SHININESS, &shininess);
     if (!number(m, AI_MATKEY_ROUGHNESS_FACTOR, &to.roughness) && shininess > 0)
         to.roughness = std::sqrt(std::sqrt(2 / (shininess + 2))); // Blinn's exponent as GGX's width, alpha = sqrt(2 / (n + 2))
-    double shine[3] = {1, 1, 1};
-    if (color(m, AI_MATKEY_COLOR_SPECULAR, shine) && std::max({shine[0], shine[1], shine[2]}) == 0) to.specular = 0;
+    double specular[3] = {1, 1, 1};
+    if (color(m, AI_MATKEY_COLOR_SPECULAR, specular) && std::max({specular[0], specular[1], specular[2]}) == 0) to.specular = 0;
     color(m, AI_MATKEY_COLOR_EMISSIVE, to.emission);
     to.emissionMap = texture(m, aiTextureType_EMISSIVE);
     to.normalMap = texture(m, aiTextureType_NORMALS);

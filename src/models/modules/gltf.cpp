@@ -20,7 +20,7 @@ struct Place {
 };
 
 /// Whether a file lies in the folder of the model or below, links followed.
-bool beside(const std::string& path, void* place) {
+bool inFolder(const std::string& path, void* place) {
     std::error_code e;
     const fs::path file = fs::canonical(path, e);
     if (e || !fs::is_regular_file(file, e)) return false;
@@ -55,10 +55,10 @@ void read(const std::string& path, Model& out) {
     const fs::path parent = fs::path(path).parent_path();
     Place place{fs::canonical(parent.empty() ? fs::path(".") : parent, e), fs::canonical(path, e)};
     tinygltf::FsCallbacks files{};
-    files.FileExists = beside;
+    files.FileExists = inFolder;
     files.ExpandFilePath = [](const std::string& p, void*) { return p; }; // no "~" and no variables
     files.ReadWholeFile = [](std::vector<unsigned char>* to, std::string* err, const std::string& p, void* user) {
-        if (beside(p, user)) return tinygltf::ReadWholeFile(to, err, p, nullptr);
+        if (inFolder(p, user)) return tinygltf::ReadWholeFile(to, err, p, nullptr);
         *err += "\"" + p + "\" is not there, or not below the model's folder\n";
         return false;
     };

@@ -77,7 +77,7 @@ Building& filterName(Building& b, RtFilterFunc filter, RtFloat xw, RtFloat yw) {
         for (const KnownFilter& k : kKnownFilters)
             if (sameFilter(filter, k.function, xw, yw)) return b.text(k.name);
     b.report(Severity::Error, Rie::Incapable, "filter functions of a program's own are not used: gaussian is, of the same widths",
-             "RiBoxFilter, RiTriangleFilter, RiCatmullRomFilter, RiGaussianFilter, RiSincFilter and those beside them in ri.h");
+             "RiBoxFilter, RiTriangleFilter, RiCatmullRomFilter, RiGaussianFilter, RiSincFilter and the others of ri.h");
     return b.text("gaussian");
 }
 

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 namespace {
 
 /// Files that an .obj names are in its folder or below.
-std::string beside(const std::string& model, std::string name) {
+std::string inFolderOf(const std::string& model, std::string name) {
     std::replace(name.begin(), name.end(), '\\', '/');
     if (name.empty() || name.find('\0') != name.npos) return {};
     const fs::path folder = fs::path(model).parent_path();
@@ -42,7 +42,7 @@ std::vector<scene::Primitive> readModelFile(const std::string& file, const Model
     const auto text = textOf(file, sink);
     if (!text) return {};
     const ReadLibrary library = [&](const std::string& name) -> std::optional<std::string> {
-        const std::string path = beside(file, name);
+        const std::string path = inFolderOf(file, name);
         if (path.empty()) return {};
         if (reads) reads->add(path);
         return textOf(path, sink);
@@ -51,7 +51,7 @@ std::vector<scene::Primitive> readModelFile(const std::string& file, const Model
     for (scene::Primitive& p : parts)
         for (scene::Param& v : p.params)
             if (v.name == "texturename" && !v.strings.empty())
-                if (const std::string path = beside(file, v.strings[0]); !path.empty()) v.strings[0] = path;
+                if (const std::string path = inFolderOf(file, v.strings[0]); !path.empty()) v.strings[0] = path;
     return parts;
 }
 

@@ -37,7 +37,7 @@ struct PlyRow {
     std::vector<std::vector<double>> lists; ///< by property
 };
 
-/// Reads the header, then row by row, in the order of the file. What is wrong is told to the log.
+/// Reads the header, then row by row, in the order of the file. The log reports what is wrong.
 class PlyFile {
 public:
     PlyFile(const std::string& path, std::string_view bytes, ModelLog& log) : path_(path), bytes_(bytes), log_(log) {}

@@ -64,7 +64,7 @@ std::vector<Request> structureRequests() {
          "Declares the class and type of a parameter name.", "\"myparam\" \"varying color\"", declare},
         {"ErrorHandler", "string style", Kind::Other, all, false,
          "What an error does, here and while the picture is drawn. \"print\": it is printed, and the rest goes on. \"ignore\": "
-         "errors and warnings are printed with -v only and leave the exit status alone; their number is told. \"abort\": the "
+         "errors and warnings are printed with -v only and leave the exit status alone; their number is printed. \"abort\": the "
          "first error is printed and ends the run: no picture is finished, and the exit status is not 0. \"printonce\" is "
          "\"print\": what recurs is printed once anyway.",
          "\"print\"", errorHandler},

@@ -3,6 +3,7 @@
 #pragma once
 #include "base/diagnostics.h"
 #include "rsl/front/plugin.h"
+#include "rsl/names.h"
 #include "shadeops/descriptor.h"
 #include <functional>
 #include <map>

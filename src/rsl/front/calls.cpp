@@ -223,7 +223,7 @@ void Checker::unknownFunction(const Expr& e) {
     for (const auto& s : scopes_)
         for (const auto& [name, f] : s.functions) names.push_back(name);
     std::sort(names.begin(), names.end());
-    for (const Shadeop& s : shadeops())
+    for (const Shadeop& s : allShadeops())
         if (s.name.rfind("__", 0) != 0) names.push_back(s.name);
     sources_.report(e.place, msg::kNoSuchFunction(e.text), unknownFunctionHint(e.text, names));
 }

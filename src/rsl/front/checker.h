@@ -175,7 +175,7 @@ private:
     std::set<const Symbol*> unclassed_; ///< parameters of functions of no class, which take that of the argument
     std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
     std::set<const Shadeop*> reportedUnavailable_; ///< reported once
-    std::set<const Symbol*> toldNotOutput_;        ///< parameters that are assigned though they are not output: reported once
+    std::set<const Symbol*> reportedNotOutput_;    ///< parameters that are assigned though they are not output: reported once
     struct MadeNumber {
         std::string name;
         Base wanted;

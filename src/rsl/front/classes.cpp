@@ -231,13 +231,13 @@ private:
                 if (f->name != "light") continue;
                 std::vector<Symbol*> others;
                 std::vector<ExprPtr> values;
-                bool told = false;
+                bool reported = false;
                 for (size_t i = 0; i < f->parameters.size(); ++i) {
                     Symbol* p = f->parameters[i];
                     if (p->name == "L" || p->name == "Cl" || p->name == "Ol") continue;
                     others.push_back(p);
                     values.push_back(i < f->defaults.size() ? std::move(f->defaults[i]) : nullptr);
-                    if (!values.back() && !std::exchange(told, true)) sources_.report(p->place, msg::kLightMethodParameters);
+                    if (!values.back() && !std::exchange(reported, true)) sources_.report(p->place, msg::kLightMethodParameters);
                 }
                 f->parameters.clear();
                 f->defaults.clear();

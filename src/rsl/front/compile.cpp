@@ -19,12 +19,12 @@ namespace {
 /// What `plugin "name"` asks for. What is missing is reported once; the calls of its functions then say nothing.
 void findPlugins(Unit& unit, const FrontOptions& options, const std::string& file, SourceSet& sources, Program& program) {
     const size_t slash = file.find_last_of('/');
-    const std::string beside = slash == std::string::npos ? "." : file.substr(0, slash);
+    const std::string folder = slash == std::string::npos ? "." : file.substr(0, slash);
     for (const PluginUse& use : unit.plugins) {
         Raised why = msg::kPluginRefused(use.name);
         std::string hint;
         std::shared_ptr<const Plugin> plugin;
-        if (options.plugin) plugin = options.plugin(use.name, beside, why, hint);
+        if (options.plugin) plugin = options.plugin(use.name, folder, why, hint);
         if (plugin) {
             if (std::find(program.plugins.begin(), program.plugins.end(), plugin) == program.plugins.end())
                 program.plugins.push_back(std::move(plugin));

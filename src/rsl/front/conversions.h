@@ -1,6 +1,7 @@
 // Which types turn into which, and what operators do with them (docs/design/rsl.md, "Conversions"). Costs order the ways a
 // program can be read.
 #pragma once
+#include "rsl/names.h"
 #include "shadeops/types.h"
 #include <optional>
 

@@ -79,7 +79,7 @@ std::string_view dialectPrelude(std::string_view dialect) {
     return d == "bmrt" || d == "entropy" ? "#include \"rayserver.h\"\n" : "";
 }
 
-// Shaders for PRMan and BMRT call rayserver(), a program beside PRMan, through macros that BMRT's compiler rejects.
+// Shaders for PRMan and BMRT call rayserver(), a program that ran next to PRMan, through macros that BMRT's compiler rejects.
 std::string_view dialectOfFunction(std::string_view function) {
     return function == "rayserver" || function == "rayservercall" ? "bmrt" : "";
 }

@@ -45,7 +45,7 @@ std::string Checker::describe(Expr& e) {
     if (info.listLength >= 0) return "an array of " + std::to_string(info.listLength);
     if (e.kind == ExprKind::Tuple) return "a triple";
     const Base b = cheapest(info);
-    return b == Base::Bool ? "a truth value" : b == Base::Void ? "nothing" : toString({b, 0});
+    return b == Base::Bool ? "a truth value" : b == Base::Void ? "nothing" : toString(Type{b, 0});
 }
 
 std::string Checker::componentHint(Base b) {
@@ -256,7 +256,7 @@ bool Checker::isNumber(const Info& i) {
 }
 
 /// What it costs to read the operands `l` and `r` as `a` and `b`. What is wanted reaches through arithmetic: in a color .5 + .5 *
-/// texture(m) is colored, so that what could be a tuple is no number beside one; numbers that are nothing else cost next to
+/// texture(m) is colored, so that what could be a tuple is no number next to one; numbers that are nothing else cost next to
 /// nothing. But what is multiplied by a point, vector or normal scales it: P + noise(P) * N goes along N. docs/language.md has
 /// the rule.
 int Checker::operandCost(ExprOp op, const Operation& o, const Info& l, Base a, const Info& r, Base b) {

@@ -88,7 +88,7 @@ private:
         if (!lit_ || lightLoops_ > 0 || now_.dead || !s || s->origin != Symbol::Origin::Global || assigned_.count(s)) return;
         if (s->name != "L" && s->name != "Cl" && s->name != "Ol") return;
         if (found_ && !*found_) *found_ = s;
-        if (found_ || !told_.insert(s).second) return;
+        if (found_ || !reported_.insert(s).second) return;
         sources_.report(place, msg::kUnlit(s->name, where),
                         "illuminance (P, N, PI/2) { ... } runs once for each light; " +
                             std::string(s->name == "L" ? "I is the direction of view" : "diffuse(N) adds them all"));
@@ -120,7 +120,7 @@ private:
         unlit(s, e.place, "");
         const auto at = tracked_.find(s);
         if (found_ || !s || s->name.rfind('(', 0) == 0 || now_.dead || at == tracked_.end() || now_.always.has(at->second) ||
-            !told_.insert(s).second)
+            !reported_.insert(s).second)
             return;
         const bool maybe = now_.sometimes.has(at->second) || loops_ > 0;
         const char* value = !isStringLike(s->type.base) ? "zero" : s->type.base == Base::Shader ? "null" : "empty";
@@ -324,7 +324,7 @@ private:
     std::set<const Symbol*> assigned_; ///< by the statements so far
     std::unordered_map<const Symbol*, size_t> tracked_;
     std::unordered_map<const StructVariable*, std::vector<size_t>> members_; ///< those in tracked_
-    std::set<const Symbol*> told_;
+    std::set<const Symbol*> reported_;
     std::unordered_map<const Symbol*, int> under_;
     State now_;
     int loops_ = 0, lightLoops_ = 0, varyingConditions_ = 0;
@@ -334,7 +334,7 @@ private:
 
 void lint(const Program& program, const std::vector<Token>& tokens, const std::unordered_set<std::string>& skipped,
           SourceSet& sources) {
-    // Who is mentioned where: a variable that a nested function reaches for has a life that no order of statements tells.
+    // Who is mentioned where: a variable that a nested function reaches for may be read at any time.
     std::set<const Symbol*> used, reached;
     const auto mention = [&](std::set<const Symbol*>& set) {
         return [&set](const Expr& e) {

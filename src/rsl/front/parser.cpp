@@ -215,7 +215,7 @@ void Parser::takeAnnotations(Shader& s) {
 }
 
 bool Parser::notYet(Place p, const char* what) {
-    if (told_.insert(what).second) sources_.report(p, msg::kNotAvailable(what));
+    if (reported_.insert(what).second) sources_.report(p, msg::kNotAvailable(what));
     unit_.incomplete = true;
     return true;
 }

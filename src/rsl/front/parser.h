@@ -168,7 +168,7 @@ private:
     bool inObject_ = false;                          ///< `this` is the shader object being read
     bool returnsValue_ = false;                      ///< a `return expression` was seen in it
     std::unordered_map<std::string, int> structs_;   ///< index in Unit::structs
-    std::unordered_set<std::string> told_;           ///< names reported as not yet available
+    std::unordered_set<std::string> reported_;       ///< names reported as not yet available
     size_t lastError_ = size_t(-1);
 };
 

@@ -225,7 +225,7 @@ ExprPtr Parser::primary() {
         const auto r = std::from_chars(begin, end, e->number);
         const bool suffix = r.ptr + 1 == end && (*r.ptr == 'f' || *r.ptr == 'F');
         if (r.ec == std::errc::result_out_of_range) {
-            // Out of the range of double: the sign of the exponent tells too large from too small.
+            // Out of the range of double: the sign of the exponent says whether it is too large or too small.
             e->number = t.text.find("e-") != t.text.npos || t.text.find("E-") != t.text.npos ? 0 : 3e38;
         } else if (r.ec != std::errc() || (r.ptr != end && !suffix)) {
             fail(t.place, msg::kBadNumber(t.text.substr(0, 40)));

@@ -1,6 +1,7 @@
 // RSL plug-ins as the front end sees them: descriptors like those of shadeops, found by name.
 #pragma once
 #include "rsl/messages/message.h"
+#include "rsl/names.h"
 #include "shadeops/descriptor.h"
 #include <functional>
 #include <memory>
@@ -26,9 +27,9 @@ struct Plugin {
     }
 };
 
-/// The plug-in that `plugin "name"` in a file of folder `beside` means. Null: the reason in
+/// The plug-in that `plugin "name"` in a file of folder `folder` means. Null: the reason in
 /// `why`, what may help in `hint`.
-using PluginFinder = std::function<std::shared_ptr<const Plugin>(const std::string& name, const std::string& beside, Raised& why,
+using PluginFinder = std::function<std::shared_ptr<const Plugin>(const std::string& name, const std::string& folder, Raised& why,
                                                                  std::string& hint)>;
 
 } // namespace alpenglow::rsl

@@ -150,8 +150,8 @@ inline constexpr char kPairGather[] = "__gather"; ///< of the two sites of a gat
 inline constexpr char kPairPoints[] = "__points"; ///< a call that is answered from point clouds
 inline constexpr char kPairHemisphere[] = "__hemisphere"; ///< a trace() that is an indirectdiffuse(): over the hemisphere
 inline constexpr char kPairHighlight[] = "__highlight";   ///< a loop over lights made from specular() or phong()
-/// An indirectdiffuse() beside diffuse() or loops over lights, and such a diffuse() of a kernel that waits: each brings its part
-/// of the light.
+/// An indirectdiffuse() together with diffuse() or loops over lights, and such a diffuse() of a kernel that waits: each brings
+/// its part of the light.
 inline constexpr char kPairApart[] = "__apart";
 /// A subsurface() with "irradiance": a kernel of its own gives that, as the output kEntering.
 inline constexpr char kPairEntering[] = "__entering";

@@ -74,7 +74,7 @@ void Checker::becomesTuple(const Info& info, const Expr& settled, Base wanted) {
 void Checker::warnOfNumbers() {
     for (const auto& [place, what] : madeNumbers_) {
         if (place[0] != 0) continue; // headers are others'
-        const std::string type = toString({what.wanted, 0});
+        const std::string type = toString(Type{what.wanted, 0});
         sources_.report({place[0], place[1], place[2]}, msg::kNumberCall(what.name, type),
                         "'" + type + " " + what.name + "(...)' has three of its own; 'float " + what.name +
                             "(...)' says that one is meant");
@@ -462,10 +462,10 @@ void Checker::written(const Expr& variable) {
         else sources_.report(variable.place, kind_ ? msg::kReadOnlyCopyIn(name, toString(*kind_)) : msg::kReadOnlyCopy(name));
         break;
     case Symbol::Origin::ShaderParameter:
-        if (!s->output && toldNotOutput_.insert(s).second) sources_.report(variable.place, msg::kNotOutput(name));
+        if (!s->output && reportedNotOutput_.insert(s).second) sources_.report(variable.place, msg::kNotOutput(name));
         break;
     case Symbol::Origin::FunctionParameter:
-        if (!s->output && toldNotOutput_.insert(s).second) sources_.report(variable.place, msg::kNotOutputOfFunction(name));
+        if (!s->output && reportedNotOutput_.insert(s).second) sources_.report(variable.place, msg::kNotOutputOfFunction(name));
         break;
     }
 }

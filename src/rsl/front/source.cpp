@@ -94,9 +94,9 @@ void SourceSet::flush(Diagnostics& d) {
     for (const Message& m : messages_) ++alike[{m.place.file, m.place.line, m.text}].first;
     size_t kept = 0; // bytes of source lines: thousands of messages about one long line must not keep it thousands of times
     for (auto& m : messages_) {
-        auto& [all, told] = alike[{m.place.file, m.place.line, m.text}];
-        if (++told > kAlike) continue;
-        if (told == kAlike && all > kAlike)
+        auto& [all, printed] = alike[{m.place.file, m.place.line, m.text}];
+        if (++printed > kAlike) continue;
+        if (printed == kAlike && all > kAlike)
             m.notes.push_back("there are " + std::to_string(all - kAlike) + " more of these in this line");
         Diagnostic out = diagnostic(m.raised, Rie::Syntax, {}, std::move(m.hint));
         out.severity = m.severity;

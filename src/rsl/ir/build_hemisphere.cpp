@@ -84,8 +84,8 @@ void Builder::hemispherePairs(const Expr& e, Inst* normal, bool occlusion, Hemis
         give(PairName::surface(output).text(), get(parameter.first), parameter.second);
 }
 
-/// Whether a call is to be answered from point clouds: an instruction that tells, or null where it names none. PRMan 12 and Aqsis
-/// knew no "pointbased": there a file and no samples mean it.
+/// Whether a call is to be answered from point clouds: an instruction with the answer, or null where it names none. PRMan 12 and
+/// Aqsis knew no "pointbased": there a file and no samples mean it.
 Inst* Builder::readsPoints(const Expr& e) {
     const bool below = e.shadeop->name == "subsurface";
     bool named = false;

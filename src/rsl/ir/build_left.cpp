@@ -27,8 +27,8 @@ Inst* Builder::leftBehind(const std::string& name, Type& type) {
 /// is an input too; else 0.
 void Builder::hearMembers() {
     for (const auto& [key, text] : options_.stringParameters) {
-        const InputName told = InputName::parse(key);
-        const Symbol* s = told.member ? ownMember(shader_, told.name) : nullptr;
+        const InputName parsed = InputName::parse(key);
+        const Symbol* s = parsed.member ? ownMember(shader_, parsed.name) : nullptr;
         if (!s) continue;
         if (!s->type.array) {
             set(slot(s), input(key, s->type, false));
@@ -41,7 +41,7 @@ void Builder::hearMembers() {
         Inst* from = input(key, {s->type.base, count}, false);
         if (const Lengths* known = lengths(a)) {
             const Lengths l = *known;
-            Inst* n = limitLength(a, heard.length ? input(InputName::left(told.name, true).text(), {Base::Float, 0}, false)
+            Inst* n = limitLength(a, heard.length ? input(InputName::left(parsed.name, true).text(), {Base::Float, 0}, false)
                                                   : constant(static_cast<float>(count)));
             set(l.length, n);
             set(l.reserved, runtime1("al_max_f", {get(l.reserved), n}, Kind::Float));

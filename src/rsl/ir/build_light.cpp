@@ -58,10 +58,10 @@ Inst* Builder::inCone(Inst* axis, Inst* angle) {
     const auto product = [&](Inst* a, Inst* b) { return emit(Op::Mul, Kind::Float, {a, b}); };
     Inst* n = runtime1("al_normalize_t", {axis}, Kind::Triple);
     Inst* steep = emit(Op::Less, Kind::Bool, {product(part(n, 0), part(n, 0)), constant(0.5f)});
-    Inst* beside = emit(Op::Select, Kind::Triple,
+    Inst* across = emit(Op::Select, Kind::Triple,
                         {steep, leaves_.constant(Kind::Triple, std::vector<float>{1, 0, 0}),
                          leaves_.constant(Kind::Triple, std::vector<float>{0, 1, 0})});
-    Inst* t = runtime1("al_normalize_t", {cross(n, beside)}, Kind::Triple);
+    Inst* t = runtime1("al_normalize_t", {cross(n, across)}, Kind::Triple);
     Inst* u = cross(n, t);
     Inst* half = runtime1("al_sin", {product(within(angle), constant(0.5f))}, Kind::Float);
     Inst* height = product(part(numbers, 0), product(constant(2), product(half, half))); // 1 - cos

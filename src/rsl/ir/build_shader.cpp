@@ -243,8 +243,8 @@ bool Builder::buildShader() {
     if (shader_.body) scanAssigned(*shader_.body, assigned, seen);
     assignedAnywhere_ = assigned;
     for (const auto& heard : options_.stringParameters)
-        if (const InputName told = InputName::parse(heard.first); told.member)
-            if (const Symbol* s = ownMember(shader_, told.name)) assigned.insert(slot(s));
+        if (const InputName parsed = InputName::parse(heard.first); parsed.member)
+            if (const Symbol* s = ownMember(shader_, parsed.name)) assigned.insert(slot(s));
     bindParameters(assigned);
     lightBlocks_.clear();
     blockRan_ = newSlot(boolean(false));

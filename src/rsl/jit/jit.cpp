@@ -1,5 +1,6 @@
 #include "rsl/jit/jit.h"
 #include "rsl/jit/loader.h"
+#include "rsl/names.h"
 #include "shadeops/bitcode.h"
 #include <algorithm>
 
@@ -17,7 +18,7 @@ struct SymbolSets {
 const SymbolSets& symbolSets() {
     static const SymbolSets sets = [] {
         SymbolSets s;
-        for (const Shadeop& op : shadeops()) {
+        for (const Shadeop& op : allShadeops()) {
             if (op.lowering != Lowering::Runtime) continue;
             for (const Signature& sig : op.signatures) {
                 if (sig.symbol.empty()) continue;

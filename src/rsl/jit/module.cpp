@@ -57,7 +57,7 @@ Module* loadModule() {
     const std::string file = moduleFile();
     if (file.empty())
         return fail(std::getenv(kVariable) ? std::string(kVariable) + " names no file"
-                                           : "it is neither beside the program nor in lib/alpenglow");
+                                           : "it is neither in the folder of the program nor in lib/alpenglow");
     void* handle = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (!handle) {
         const char* why = dlerror();

@@ -1,4 +1,4 @@
-// All messages of the compiler, by name: msg::kUndeclared and so on. The tables are the .inc files beside this one, by subject.
+// All messages of the compiler, by name: msg::kUndeclared and so on. The tables are the .inc files of this folder, by subject.
 #pragma once
 #include "rsl/messages/message.h"
 #include <span>

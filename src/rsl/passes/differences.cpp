@@ -313,13 +313,13 @@ private:
         scopes_.clear();
     }
 
-    void beside(uint8_t bits, const std::function<void(Neighbour)>& f) {
+    void eachNeighbour(uint8_t bits, const std::function<void(Neighbour)>& f) {
         for (int n = 1; n < kNeighbours; ++n)
             if (bits & bitOf(neighbour(n))) f(neighbour(n));
     }
 
     void mainInst(Inst* i) {
-        const auto each = [&](uint8_t bits, const auto& f) { beside(bits, f); };
+        const auto each = [&](uint8_t bits, const auto& f) { eachNeighbour(bits, f); };
         switch (i->op) {
         case Op::Du:
         case Op::Dv:
@@ -331,16 +331,16 @@ private:
             return;
         case Op::ArrayNew:
             put(i);
-            return beside(demand_->array(i, nullptr), [&](Neighbour n) { set(i, n, put(like(i, {}))); });
+            return eachNeighbour(demand_->array(i, nullptr), [&](Neighbour n) { set(i, n, put(like(i, {}))); });
         case Op::If:
         case Op::Loop:
         case Op::LightLoop:
-            beside(demand_->results(i, nullptr), [&](Neighbour n) { repeat(i, n, nullptr); });
+            eachNeighbour(demand_->results(i, nullptr), [&](Neighbour n) { repeat(i, n, nullptr); });
             return mainConstruct(i);
         case Op::Runtime:
         case Op::Service:
         case Op::Call: {
-            beside(demand_->results(i, nullptr), [&](Neighbour n) { repeat(i, n, nullptr); });
+            eachNeighbour(demand_->results(i, nullptr), [&](Neighbour n) { repeat(i, n, nullptr); });
             std::vector<Inst*> more;
             if (i->op == Op::Call)
                 for (const auto& [p, n] : demand_->carried(i->args[0], nullptr))
@@ -352,7 +352,7 @@ private:
         default:
             break;
         }
-        beside(demand_->of(i, nullptr), [&](Neighbour n) { copyAt(i, n); });
+        eachNeighbour(demand_->of(i, nullptr), [&](Neighbour n) { copyAt(i, n); });
         if (i->op != Op::Du && i->op != Op::Dv) put(i);
     }
 

@@ -56,7 +56,7 @@ private:
     mutable std::map<std::pair<const Inst*, int>, bool> repeatable_;
 };
 
-/// What is wanted at which neighbours. A value within a construct is wanted either there, beside the point, so that its
+/// What is wanted at which neighbours. A value within a construct is wanted either there, next to the point, so that its
 /// neighbours take the branch that the point takes; or in a repetition of the construct at the neighbour, which takes the
 /// neighbour's own branches. `within` names the outermost repeated construct, null for none.
 class Demand {
@@ -72,7 +72,7 @@ public:
     uint8_t array(const Inst* a, const Inst* within) const { return get(arrays_, a, within); }
     uint8_t result(const Inst* owner, size_t index, const Inst* within) const { return get(results_, owner, within, index); }
     uint8_t results(const Inst* owner, const Inst* within) const;
-    /// What a Loop, LightLoop or Function carries beside its own values, or what a followed If gives: index and neighbour, in
+    /// What a Loop, LightLoop or Function carries besides its own values, or what a followed If gives: index and neighbour, in
     /// order.
     using Carried = std::vector<std::pair<int, Neighbour>>;
     Carried carried(const Inst* construct, const Inst* within) const;

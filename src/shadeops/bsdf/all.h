@@ -13,7 +13,7 @@
 #include "shadeops/bsdf/ward.h"
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 std::span<const Distribution> distributions() {
     static const std::vector<Distribution> list = {bsdfUniform(),          bsdfCosine(),       bsdfOrenNayar(), bsdfBlinn(),
                                                    bsdfAshikhminShirley(), bsdfCookTorrance(), bsdfWard(),      bsdfGgx(),
@@ -30,5 +30,5 @@ std::vector<Shadeop> bsdfShadeops() {
     for (const Distribution& d : distributions()) list.push_back(d.formula);
     return list;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/bsdf/common.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// (n . h)^(eu cos^2 ph + ev sin^2 ph), t the tangents, and the value that it gives; both = (eu + 1)(ev + 1).
 template <class T> AL_INLINE T ashikhminLobe(const Facet<T>& f, const Pair<Triple<T>>& t, const T& eu, const T& ev) {
@@ -25,10 +25,10 @@ AL_INLINE Triple<T> opBsdfAshikhminShirley(const Triple<T>& l, const Triple<T>& 
 }
 AL_RUNTIME(al_bsdf_ashikhminshirley, opBsdfAshikhminShirley)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfAshikhminShirley() {
     return bsdfOp(
         "ashikhmin-shirley",
@@ -42,5 +42,5 @@ inline Distribution bsdfAshikhminShirley() {
         {"__bsdf_ashikhminshirley(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 1, 1, color(1,1,1), color(0,0,0))",
          "0 0 0"});
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

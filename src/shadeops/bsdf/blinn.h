@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/bsdf/common.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// (n . h)^e, e the exponent, and the value that it gives.
 template <class T> AL_INLINE T blinnLobe(const Facet<T>& f, const T& e) {
@@ -23,10 +23,10 @@ AL_INLINE Triple<T> opBsdfBlinn(const Triple<T>& l, const Triple<T>& n, const Tr
 }
 AL_RUNTIME(al_bsdf_blinn, opBsdfBlinn)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfBlinn() {
     return bsdfOp("blinn", "color __bsdf_blinn(vector l, vector n, vector wo; float roughness; color eta, color k)",
                   "al_bsdf_blinn",
@@ -36,5 +36,5 @@ inline Distribution bsdfBlinn() {
                   {"__bsdf_blinn(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))",
                    "0.07957747 0.07957747 0.07957747"});
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -7,7 +7,7 @@
 #pragma once
 #include "shadeops/call.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// Smaller roughness counts as this: a mirror has no value at a single direction.
 inline constexpr float kLeastRoughness = 0.01f;
@@ -81,13 +81,13 @@ template <class T> AL_INLINE T grooves(const Facet<T>& f) {
 /// Roughness to exponent (seed): roughness^-3.5 - 1.
 template <class T> AL_INLINE T exponentOf(const T& roughness) { return positive(power(sane(roughness), T(vf(-3.5f))) - vf(1)); }
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
 #include "shadeops/describe.h"
 #include "shadeops/distributions.h"
 
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 /// A distribution and its hidden shadeop, which is large, so called and not inlined.
 inline Distribution bsdfOp(const char* name, const char* signature, const char* symbol, const char* doc, const char* source,
                            Example example) {
@@ -106,5 +106,5 @@ inline Distribution bsdfOp(const char* name, const char* signature, const char* 
     if (!example.expression.empty()) op.examples = {std::move(example)};
     return d;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/bsdf/common.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// Beckmann's density of slopes, m2 = roughness^2, and the value that it gives.
 template <class T> AL_INLINE T beckmann(const Facet<T>& f, const T& m2) {
@@ -22,10 +22,10 @@ AL_INLINE Triple<T> opBsdfCookTorrance(const Triple<T>& l, const Triple<T>& n, c
 }
 AL_RUNTIME(al_bsdf_cooktorrance, opBsdfCookTorrance)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfCookTorrance() {
     return bsdfOp("cook-torrance",
                   "color __bsdf_cooktorrance(vector l, vector n, vector wo; float roughness; color eta, color k)",
@@ -36,5 +36,5 @@ inline Distribution bsdfCookTorrance() {
                   {"__bsdf_cooktorrance(vector(0,0,1), vector(0,0,1), vector(0,0,1), 1, color(0,0,0), color(0,0,0))",
                    "0.07957747 0.07957747 0.07957747"});
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

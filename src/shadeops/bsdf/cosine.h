@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/bsdf/common.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T> AL_INLINE T opBsdfCosine(const Triple<T>& l, const Triple<T>& n, const T& cone) {
     const T c = larger(smaller(cone, T(vf(kPi / 2))), T(vf(0))), s = sine(c), nl = dot(normalize(n), normalize(l));
@@ -11,14 +11,14 @@ template <class T> AL_INLINE T opBsdfCosine(const Triple<T>& l, const Triple<T>&
 }
 AL_RUNTIME(al_bsdf_cosine, opBsdfCosine)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfCosine() {
     return bsdfOp("cosine", "float __bsdf_cosine(vector l, vector n; float cone)", "al_bsdf_cosine",
                   "n . l / (PI sin^2 cone) within the cone of half angle cone about n (at most PI/2), else 0; 0 for cone 0.",
                   "3Delight manual, 6.4.5.2", {"__bsdf_cosine(vector(0,0,1), vector(0,0,1), 2)", "0.3183099"});
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

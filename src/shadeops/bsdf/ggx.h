@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/bsdf/smith.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T>
 AL_INLINE Triple<T> opBsdfGgx(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const Triple<T>& udir,
@@ -15,10 +15,10 @@ AL_INLINE Triple<T> opBsdfGgx(const Triple<T>& l, const Triple<T>& n, const Trip
 }
 AL_RUNTIME(al_bsdf_ggx, opBsdfGgx)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfGgx() {
     return bsdfOp(
         "ggx",
@@ -31,5 +31,5 @@ inline Distribution bsdfGgx() {
         {"__bsdf_ggx(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 1, 1, color(0,0,0), color(0,0,0))",
          "0.07957747 0.07957747 0.07957747"});
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -4,7 +4,7 @@
 #include "shadeops/bsdf/common.h"
 #include "shadeops/lighting_fresnel.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// Smith's shadowing for one direction: a2 = (roughness w_u)^2 + (roughnessv w_v)^2, c its cosine with the normal.
 template <class T> AL_INLINE T smithGgx(const T& a2, const T& c) {
@@ -78,10 +78,10 @@ AL_INLINE void opBsdfGlassParts(const Triple<T>& l, const Triple<T>& n, const Tr
 }
 AL_RUNTIME(al_bsdf_glassggx, opBsdfGlassParts)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfGlass() {
     Distribution d =
         bsdfOp("glass-ggx",
@@ -99,5 +99,5 @@ inline Distribution bsdfGlass() {
     d.parts = 2;
     return d;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

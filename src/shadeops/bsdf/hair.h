@@ -7,7 +7,7 @@
 #include "shadeops/bsdf/common.h"
 #include "shadeops/lighting_fresnel.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// Index of refraction of a call that gives none.
 inline constexpr float kHairEta = 1.55f;
@@ -201,10 +201,10 @@ AL_INLINE Triple<T> opBsdfHair(const Triple<T>& l, const Triple<T>& tip0, const 
 }
 AL_RUNTIME(al_bsdf_hair, opBsdfHair)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfHair() {
     Distribution d =
         bsdfOp("hair",
@@ -227,5 +227,5 @@ inline Distribution bsdfHair() {
     d.surface = false;
     return d;
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

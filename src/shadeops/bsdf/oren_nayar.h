@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/bsdf/common.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// l, n and o are unit.
 template <class T> AL_INLINE T orenNayar(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o, const T& roughness) {
@@ -18,10 +18,10 @@ template <class T> AL_INLINE T opBsdfOrenNayar(const Triple<T>& l, const Triple<
 }
 AL_RUNTIME(al_bsdf_orennayar, opBsdfOrenNayar)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfOrenNayar() {
     return bsdfOp("oren-nayar", "float __bsdf_orennayar(vector l, vector n, vector wo; float roughness)", "al_bsdf_orennayar",
                   "n . l (A + B max(0, cos(dphi)) sin(a) tan(b)) / PI, s = roughness (radians, no upper limit), "
@@ -30,5 +30,5 @@ inline Distribution bsdfOrenNayar() {
                   "3Delight manual, 6.4.5.2; Oren and Nayar 1994",
                   {"__bsdf_orennayar(vector(0,0,1), vector(0,0,1), vector(0,0,1), 0)", "0.3183099"});
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -4,7 +4,7 @@
 #pragma once
 #include "shadeops/bsdf/common.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// Squared length of w's part in the plane where facets of roughness a along and b across become round ones of roughness 1.
 template <class T> AL_INLINE T stretched2(const Triple<T>& w, const Pair<Triple<T>>& t, const T& a, const T& b) {
@@ -44,4 +44,4 @@ template <class T> AL_INLINE T beckmannLambda(const T& s2, const T& c) {
     return exponential(-x * x) * (divide(T(vf(0.564189584f)), x) - scaledErfc(x)) * vf(0.5f); // 1 / sqrt(pi)
 }
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE

@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/bsdf/common.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 template <class T> AL_INLINE T opBsdfUniform(const Triple<T>& l, const Triple<T>& n, const T& cone) {
     const T limit = cosine(larger(smaller(cone, T(vf(kPi))), T(vf(0))));
@@ -11,15 +11,15 @@ template <class T> AL_INLINE T opBsdfUniform(const Triple<T>& l, const Triple<T>
 }
 AL_RUNTIME(al_bsdf_uniform, opBsdfUniform)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfUniform() {
     return bsdfOp("uniform", "float __bsdf_uniform(vector l, vector n; float cone)", "al_bsdf_uniform",
                   "1 / (2 PI (1 - cos cone)) within the cone of half angle cone about n, else 0; 0 for cone 0, "
                   "which is one direction.",
                   "3Delight manual, 6.4.5.2", {"__bsdf_uniform(vector(0,0,1), vector(0,0,1), 1.6)", "0.1546395"});
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

@@ -2,7 +2,7 @@
 #pragma once
 #include "shadeops/bsdf/common.h"
 
-namespace alpenglow::rsl::AL_NAMESPACE {
+namespace alpenglow::shadeops::AL_NAMESPACE {
 
 /// exp(-tan^2 th (cos^2 ph / a^2 + sin^2 ph / b^2)), t the tangents, and the value that it gives.
 template <class T> AL_INLINE T wardLobe(const Facet<T>& f, const Pair<Triple<T>>& t, const T& a, const T& b) {
@@ -23,10 +23,10 @@ AL_INLINE T opBsdfWard(const Triple<T>& l, const Triple<T>& n, const Triple<T>& 
 }
 AL_RUNTIME(al_bsdf_ward, opBsdfWard)
 
-} // namespace alpenglow::rsl::AL_NAMESPACE
+} // namespace alpenglow::shadeops::AL_NAMESPACE
 
 #ifdef ALPENGLOW_DESCRIBE
-namespace alpenglow::rsl {
+namespace alpenglow::shadeops {
 inline Distribution bsdfWard() {
     return bsdfOp("ward", "float __bsdf_ward(vector l, vector n, vector wo, vector udir; float roughness, float roughnessv)",
                   "al_bsdf_ward",
@@ -35,5 +35,5 @@ inline Distribution bsdfWard() {
                   "3Delight manual, 6.4.5.2; Ward 1992",
                   {"__bsdf_ward(vector(0,0,1), vector(0,0,1), vector(0,0,1), vector(1,0,0), 0.5, 0.5)", "0.3183099"});
 }
-} // namespace alpenglow::rsl
+} // namespace alpenglow::shadeops
 #endif

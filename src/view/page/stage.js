@@ -1,4 +1,4 @@
-// The picture on the stage: what has come, what is kept beside it, moving and zooming, and the three tools.
+// The picture on the stage: what has come, what is kept for comparison, moving and zooming, and the three tools.
 import { halfValues, paint, paintDifference, rangeOf, kindOf } from './pixels.js';
 
 const make = (w, h) => Object.assign(document.createElement('canvas'), { width: w, height: h });

@@ -109,7 +109,7 @@ TEST(Hints, SayWhatWasMeant) {
         EXPECT_EQ(d.hint.find("'surface'"), std::string::npos) << d.hint;
 }
 
-// The names of the specification have no prefix; texture3d() gives what it reads; a parameter is told of once, however often it
+// The names of the specification have no prefix; texture3d() gives what it reads; a parameter is reported once, however often it
 // is changed.
 TEST(Warnings, NotWhereNothingIsWrong) {
     const auto count = [](const std::string& body, const std::string& what, const std::string& before = "") {

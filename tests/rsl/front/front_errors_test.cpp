@@ -205,9 +205,9 @@ TEST(FrontErrors, WhatALineRepeatsIsCounted) {
     for (int i = 0; i < 100; ++i) body += "f++; ";
     const Compiled c = compileBody(body + "\nf++;");
     const std::string text = c.text(), what = "'++' is not of this language";
-    size_t told = 0;
-    for (size_t at = 0; (at = text.find(what, at)) != text.npos; ++at) ++told;
-    EXPECT_EQ(told, 21u) << text; // twenty of the first line, one of the second
+    size_t count = 0;
+    for (size_t at = 0; (at = text.find(what, at)) != text.npos; ++at) ++count;
+    EXPECT_EQ(count, 21u) << text; // twenty of the first line, one of the second
     ASSERT_EQ(c.messages.size(), 21u);
     EXPECT_EQ(c.messages[19].notes, std::vector<std::string>{"there are 80 more of these in this line"});
 }

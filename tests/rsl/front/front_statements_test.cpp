@@ -173,7 +173,7 @@ TEST(FrontFunctions, RslShadeopsAreBoundToTheirText) {
 }
 
 TEST(FrontFunctions, EveryRslShadeopCompiles) {
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         if (op.lowering != Lowering::Rsl) continue;
         ShaderKind kind = ShaderKind::Surface;
         while (!(op.contexts & contextOf(kind))) kind = ShaderKind(int(kind) + 1);

@@ -129,25 +129,25 @@ TEST(Messages, StructuresInCallsAreWhatWasWritten) {
         "struct T { S s[2]; float t; }\n"
         "float f(S s; float x) { return x * s->a; }\n"
         "T g(output S s[]; string t) { T r; return r; }\n";
-    const auto told = [&](const std::string& statements) {
+    const auto errorOf = [&](const std::string& statements) {
         const auto c = compileSnippet(structs + "surface s() { S s, q[3]; " + statements + " }\n");
         EXPECT_EQ(c.errors(), 1) << c.text();
         return c.messages.empty() ? Diagnostic{} : c.messages[0];
     };
-    Diagnostic d = told("s->put(1);");
+    Diagnostic d = errorOf("s->put(1);");
     EXPECT_EQ(d.message, "'S->put' cannot be called with (float)");
     EXPECT_EQ(d.notes, (Ids{"candidate void S->put(float, color): it takes 2 arguments, not 1"}));
     EXPECT_EQ(d.hint, "it can be called as void S->put(float, color)");
-    d = told("q[1]->put(\"x\", 1);");
+    d = errorOf("q[1]->put(\"x\", 1);");
     EXPECT_EQ(d.notes, (Ids{"candidate void S->put(float, color): argument 1 is string, not float"}));
-    d = told("s->put();");
+    d = errorOf("s->put();");
     EXPECT_EQ(d.message, "'S->put' cannot be called without arguments");
-    d = told("Ci = f(s);");
+    d = errorOf("Ci = f(s);");
     EXPECT_EQ(d.message, "'f' cannot be called with (S)");
     EXPECT_EQ(d.notes, (Ids{"candidate float f(S, float): it takes 2 arguments, not 1"}));
-    d = told("Ci = f(s, \"x\");");
+    d = errorOf("Ci = f(s, \"x\");");
     EXPECT_EQ(d.notes, (Ids{"candidate float f(S, float): argument 2 is string, not float"}));
-    d = told("T r = g(q, 1);");
+    d = errorOf("T r = g(q, 1);");
     EXPECT_EQ(d.message, "'g' cannot be called with (S[3], float)");
     EXPECT_EQ(d.hint, "it can be called as T g(output S[], string)");
 }

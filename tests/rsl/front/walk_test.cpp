@@ -102,7 +102,7 @@ TEST(Writes, AMethodOfAnotherShaderMayWriteWhatItIsGiven) {
 
 TEST(Writes, TextsOfShadeopsHaveTheOutputsOfTheirSignatures) {
     int outputs = 0;
-    for (const Shadeop& op : shadeops()) {
+    for (const Shadeop& op : allShadeops()) {
         if (op.lowering != Lowering::Rsl) continue;
         Diagnostics d;
         const auto p = compileText(op.rsl + "\nsurface __s() {}", "text.sl", {}, d);

@@ -260,7 +260,7 @@ TEST(Codegen, ArrayInputs) {
     }
 }
 
-// A service under a mask: it is told the lanes, its arguments and the place of its results; strings are ids.
+// A service under a mask: it is given the lanes, its arguments and the place of its results; strings are ids.
 TEST(Codegen, ServicesSeeTheMask) {
     Made m;
     Inst *x = m.input("x"), *zero = m.number(0);

@@ -8,7 +8,6 @@
 namespace sampler_test {
 
 using namespace alpenglow;
-using namespace alpenglow::render;
 using namespace alpenglow::teststat;
 
 namespace {

@@ -1,7 +1,9 @@
 // Where rays of the camera are the only ones, nothing is diced that they cannot come to; where a shader or a light sends others,
 // all of it is.
-#include "harness.h"
+#include "integrator/harness.h"
 #include "world/impl.h"
+
+namespace picturesides_test {
 
 using namespace alpenglow;
 using namespace alpenglow::integrator;
@@ -91,3 +93,5 @@ TEST(PictureSides, TenThousandDisplacedPatchesTakeWhatThePictureShows) {
     EXPECT_LT(seen, all / 3) << "what is said here is worth something";
     EXPECT_LT(bytes, size_t(2) << 20);
 }
+
+} // namespace picturesides_test

@@ -1,6 +1,6 @@
 // Loops over lights by their handles: getlights(), handle->light().
 #include "base/limits.h"
-#include "integrator/lightloopscene.h"
+#include "services/lightloopscene.h"
 
 namespace lightloop_test {
 namespace {

@@ -1,5 +1,5 @@
 // __nondiffuse and __nonspecular: how much of a light the lobes of a surface take.
-#include "integrator/lightloopscene.h"
+#include "services/lightloopscene.h"
 
 namespace lightloop_test {
 namespace {

@@ -1,7 +1,9 @@
 // A displacement shader that leaves P as it is, with the values that its parameters have, makes no grid: the primitive keeps its
 // exact form, and the normals that the shader sets arrive.
-#include "harness.h"
+#include "integrator/harness.h"
 #include "world/impl.h"
+
+namespace unmoved_test {
 
 using namespace alpenglow;
 using namespace alpenglow::integrator;
@@ -70,3 +72,5 @@ TEST(Unmoved, TheNormalThatItSetsArrives) {
             EXPECT_NEAR(c.z, 0, 1e-5) << primitive << km;
         }
 }
+
+} // namespace unmoved_test

@@ -8,7 +8,7 @@
 namespace lobelanes_test {
 
 using namespace alpenglow;
-using namespace alpenglow::integrator;
+using namespace alpenglow::bsdf;
 
 namespace {
 

@@ -1,7 +1,7 @@
 // illuminance in all its forms. A large floor y = 0 seen at the origin; a point light of intensity I
 // at height h straight above gives Cl = I / h^2 there, L = (0, h, 0). Under path the same, for nothing lies between.
 #include "base/limits.h"
-#include "integrator/lightloopscene.h"
+#include "services/lightloopscene.h"
 
 namespace lightloop_test {
 

@@ -1,5 +1,5 @@
 // solar(): lights of one direction, of a cone of directions, and skies.
-#include "integrator/lightloopscene.h"
+#include "services/lightloopscene.h"
 
 namespace lightloop_test {
 namespace {

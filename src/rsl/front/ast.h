@@ -214,6 +214,7 @@ struct StructSummary {
     std::string name;
     std::vector<Member> members;
     std::vector<Member> methods;
+    int base = -1; ///< the structure it extends, by its number in Program::structs; -1: none
     Place place;
 };
 
@@ -251,6 +252,10 @@ struct Program {
 
 /// A structure as the shader names it, with the brackets of an array of them: "S", "S[3]", "S[]".
 std::string toString(const Whole&, const Program&);
+/// How many structures above `given` the wanted one is: 0 is the same, -1 that it cannot be given for it. A structure can be
+/// given where one that it extends is wanted, if both are arrays or neither is. Those of the same members with different names
+/// are different types.
+int extensions(const Whole& given, const Whole& wanted, const Program&);
 
 struct FrontOptions {
     std::vector<std::string> includePaths;

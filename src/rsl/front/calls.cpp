@@ -76,6 +76,16 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
     return costTo(info, wanted.base);
 }
 
+/// The cost of passing what stands for a structure, seen at the first of its members; kNever if the parameter is none, or
+/// another. 0 where no structure begins.
+int Checker::structureCost(const Expr& argument, const ParameterView& parameter) const {
+    const Whole &given = argument.whole, &wanted = parameter.whole;
+    if (given.structure < 0)
+        return wanted.structure < 0 || argument.kind == ExprKind::ArrayList || infos_.at(&argument).any ? 0 : kNever;
+    const int steps = extensions(given, wanted, program_);
+    return steps < 0 ? kNever : std::min(steps * kConversion, kNever - 1);
+}
+
 /// Whether it is a string and can be nothing else.
 bool Checker::isText(const Expr& e) const {
     if (e.kind == ExprKind::String) return true;
@@ -90,8 +100,9 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     choice.cost = 0;
     size_t i = 0;
     for (; i < parameters.size(); ++i) {
-        const int c = argumentCost(*call.args[i], parameters[i], ignoreOutputs);
-        if (c >= kNever) return false;
+        const int structure = choice.shadeop ? 0 : structureCost(*call.args[i], parameters[i]); // signatures list the members
+        const int c = structure + argumentCost(*call.args[i], parameters[i], ignoreOutputs);
+        if (structure >= kNever || c >= kNever) return false;
         choice.cost = std::min(kNever - 1, choice.cost + c);
     }
     if (repeats && !parameters.empty())

@@ -12,6 +12,15 @@ std::string toString(const Whole& w, const Program& program) {
            (w.array ? "[" + (w.array > 0 ? std::to_string(w.array) : "") + "]" : "");
 }
 
+int extensions(const Whole& given, const Whole& wanted, const Program& program) {
+    if (given.structure < 0 || wanted.structure < 0 || (given.array != 0) != (wanted.array != 0)) return -1;
+    const auto& all = program.structs;
+    int s = given.structure;
+    for (int steps = 0; s >= 0 && size_t(s) < all.size() && size_t(steps) <= all.size(); ++steps, s = all[size_t(s)].base)
+        if (s == wanted.structure) return steps;
+    return -1;
+}
+
 namespace front {
 
 namespace {
@@ -53,14 +62,16 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
     const size_t n = call.args.size();
     const auto given = asWritten(n, [&](size_t i) { return call.args[i]->whole; });
     const auto taken = asWritten(parameters.size(), [&](size_t i) { return parameters[i].whole; });
-    if (given.size() != n || taken.size() != parameters.size()) {
+    const auto structure = [](const Written& w) { return w.structure; };
+    if (given.size() != n || taken.size() != parameters.size() || std::ranges::any_of(given, structure) ||
+        std::ranges::any_of(taken, structure)) {
         if (given.size() != taken.size())
             return "it takes " + counted(taken.size(), "argument") + ", not " + std::to_string(given.size());
         for (size_t k = 0; k < given.size(); ++k) {
             Expr& a = *call.args[given[k].at];
             const ParameterView& p = parameters[taken[k].at];
             const bool plain = !given[k].structure && !taken[k].structure;
-            if (!plain && given[k].structure == taken[k].structure && (a.whole.array != 0) == (p.whole.array != 0)) continue;
+            if (!plain && extensions(a.whole, p.whole, program_) >= 0) continue;
             if (plain && argumentCost(a, p, false) < kNever) continue;
             const std::string which = "argument " + std::to_string(k + 1);
             if (plain && p.output && !isVariable(a)) return which + " is an output and must be a variable";
@@ -68,6 +79,11 @@ std::string Checker::whyNot(const std::vector<ParameterView>& parameters, bool r
                    (taken[k].structure ? toString(p.whole, program_) : toString(p.type)) +
                    (p.output ? ", and what is put out is not converted" : "");
         }
+        const auto result = [](const Whole& w) { return w.self && w.structure >= 0; };
+        for (size_t k = std::min(n, parameters.size()); k-- > 0;)
+            if (const Whole &want = call.args[k]->whole, &have = parameters[k].whole; result(want) && result(have))
+                if (extensions(have, want, program_) < 0)
+                    return "it gives " + toString(have, program_) + ", not " + toString(want, program_);
         return "a structure does not fit";
     }
     if (n < parameters.size())

@@ -108,6 +108,7 @@ private:
     /// Whether the call fits the parameters; fills cost and positional of the choice.
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, const ParameterView& wanted, bool ignoreOutputs);
+    int structureCost(const Expr& argument, const ParameterView& wanted) const;
     Type wantedType(const ParameterView&, const Expr& argument) const;
     static void bestByArguments(std::vector<Choice>&); ///< removes choices that others beat by their arguments
     void preferArray(const Expr&, Type wanted);

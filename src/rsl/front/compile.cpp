@@ -39,6 +39,7 @@ void findPlugins(Unit& unit, const FrontOptions& options, const std::string& fil
 StructSummary summary(const StructType& s, const Unit& unit) {
     StructSummary r;
     r.name = s.name;
+    r.base = s.base;
     r.place = s.place;
     for (const StructMember& m : s.members) {
         std::string type = toString(m.type.element());

@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "rsl/front/clone.h"
 #include "rsl/front/structs_lowering.h"
+#include <algorithm>
 
 namespace alpenglow::rsl::front {
 
@@ -92,14 +93,15 @@ int Lowering::structNamed(const std::string& name) const {
     return -1;
 }
 
-bool Lowering::derives(Type t, Base base) const {
-    if (!isStruct(t)) return false;
-    while (t.base != base) {
+int Lowering::extensions(Type t, Base base) const {
+    if (!isStruct(t)) return -1;
+    int steps = 0;
+    for (; t.base != base; ++steps) {
         const int up = structOf(t).base;
-        if (up < 0) return false;
+        if (up < 0) return -1;
         t.base = structBase(size_t(up));
     }
-    return true;
+    return steps;
 }
 
 /// The name of the function that a method of this structure, or of one that it extends, became; empty if there is none. A method
@@ -123,6 +125,32 @@ std::string Lowering::methodNamed(Type t, const std::string& method, size_t argu
     }
 }
 
+bool Lowering::accepts(const Result& f, const List& given, const std::vector<Type>& types) const {
+    if (f.parameters.size() != given.size()) return false;
+    for (size_t i = 0; i < given.size(); ++i) {
+        const Type t = types[i], p = f.parameters[i];
+        if (isStruct(t) ? !derives(t, p.base) : isStruct(p) && !isList(*given[i])) return false;
+    }
+    return true;
+}
+
+Type Lowering::resultOf(const std::string& function, const List& given, Base wanted) const {
+    const auto [from, to] = functions_.equal_range(function);
+    if (std::none_of(from, to, [](const auto& f) { return isStruct(f.second.type); })) return kNone;
+    std::vector<Type> types; // once for all functions: an argument may be a call, too
+    for (const auto& a : given) types.push_back(typeOf(*a));
+    Type first = kNone, some = kNone; // where none fits, the message about the arguments comes later
+    for (auto f = from; f != to; ++f) {
+        const Type t = f->second.type;
+        if (!isStruct(t) || f->second.parameters.size() != given.size()) continue;
+        if (some == kNone) some = t;
+        if (!accepts(f->second, given, types)) continue;
+        if (wanted != Base::Void && derives(t, wanted)) return t;
+        if (first == kNone) first = t;
+    }
+    return first == kNone ? some : first;
+}
+
 /// The structure that an expression is, or void.
 Type Lowering::typeOf(const Expr& e) const {
     switch (e.kind) {
@@ -143,9 +171,7 @@ Type Lowering::typeOf(const Expr& e) const {
     }
     case ExprKind::ShadeopCall: {
         if (const int i = structNamed(e.text); i >= 0) return {structBase(size_t(i)), 0};
-        const auto [from, to] = functions_.equal_range(e.text);
-        for (auto f = from; f != to; ++f)
-            if (f->second.parameters.size() == e.args.size() && isStruct(f->second.type)) return f->second.type;
+        if (const Type t = resultOf(e.text, e.args); isStruct(t)) return t;
         if (e.text == "pop" && e.args.size() == 1)
             if (const Type t = typeOf(*e.args[0]); isStruct(t) && t.array) return {t.base, 0};
         return kNone;
@@ -153,10 +179,7 @@ Type Lowering::typeOf(const Expr& e) const {
     case ExprKind::Method: {
         const Type t = typeOf(*e.args[0]);
         if (!isStruct(t) || t.array) return kNone;
-        const auto [from, to] = functions_.equal_range(methodNamed(t, e.text, e.args.size() - 1));
-        for (auto f = from; f != to; ++f)
-            if (f->second.parameters.size() == e.args.size() && isStruct(f->second.type)) return f->second.type;
-        return kNone;
+        return resultOf(methodNamed(t, e.text, e.args.size() - 1), e.args);
     }
     case ExprKind::Conditional:
         return typeOf(*e.args[1]);

@@ -47,12 +47,19 @@ private:
     std::vector<Leaf> leaves(Type t) const;
     const StructMember* member(Type t, const std::string& name) const;
     int structNamed(const std::string& name) const;
-    /// Is it the structure of that base, or does it extend it?
-    bool derives(Type t, Base base) const;
+    /// How many structures above t the one of that base is: 0: t is it; -1: t does not extend it, or is no structure.
+    int extensions(Type t, Base base) const;
+    bool derives(Type t, Base base) const { return extensions(t, base) >= 0; }
     /// The name of the function that a method of this structure, or of one that it extends, became; empty if there is none.
     std::string methodNamed(Type t, const std::string& method, size_t arguments) const;
     /// The structure that an expression is, or void.
     Type typeOf(const Expr& e) const;
+    static bool isList(const Expr& e) { return e.kind == ExprKind::ArrayList; }
+    /// Whether arguments of these types (void: no structure) fit the parameters, as far as structures say.
+    bool accepts(const Result& function, const List& given, const std::vector<Type>& types) const;
+    /// The structure that a call of this name gives, or void. Of the functions that its structures fit, the first that gives
+    /// `wanted` or what extends it, else the first that gives a structure.
+    Type resultOf(const std::string& function, const List& given, Base wanted = Base::Void) const;
     Symbol* newSymbol(const std::string& name, Type type, Storage storage, Place place);
     /// The variables of one variable of a structure; what was declared of it holds for each.
     std::vector<Symbol*> split(const Symbol& s);
@@ -100,7 +107,7 @@ private:
     /// Name(a, b, ...) or {a, b, ...}.
     void construct(Type type, Expr& e, List& pre, List& out);
     /// The parts of an expression that is a structure; what must happen before goes to `pre`.
-    void flatten(ExprPtr e, List& pre, List& out);
+    void flatten(ExprPtr e, List& pre, List& out, Type as = kNone);
     void flattenElement(Expr& e, Type type, List& pre, List& out);
     void flattenConditional(Expr& e, Type type, List& pre, List& out);
     void flattenCall(ExprPtr e, Type type, List& pre, List& out);

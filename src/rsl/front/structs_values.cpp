@@ -20,7 +20,9 @@ void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
         construct(want, *e, pre, out);
         return;
     }
-    const Type have = typeOf(*e);
+    Type have = typeOf(*e);
+    if (isStruct(have) && e->kind == ExprKind::ShadeopCall && structNamed(e->text) < 0 && !derives(have, want.base))
+        if (const Type other = resultOf(e->text, e->args, want.base); isStruct(other)) have = other;
     const bool fits = derives(have, want.base) && // of one that extends it the part that it extends
                       (have.array != 0) == (want.array != 0) && (have.array == want.array || have.array < 0 || want.array < 0);
     if (!fits) {
@@ -34,7 +36,7 @@ void Lowering::valueOf(ExprPtr e, Type want, List& pre, List& out) {
         return;
     }
     const size_t before = out.size();
-    flatten(std::move(e), pre, out);
+    flatten(std::move(e), pre, out, have);
     if (out.size() > before + count) out.resize(before + count);
 }
 
@@ -159,8 +161,9 @@ void Lowering::flattenCall(ExprPtr e, Type type, List& pre, List& out) {
 }
 
 /// The plain members of an expression that is a structure. Effects that must come first are appended to `pre`.
-void Lowering::flatten(ExprPtr e, List& pre, List& out) {
-    const Type type = typeOf(*e);
+/// `as`: its type, where that is known already.
+void Lowering::flatten(ExprPtr e, List& pre, List& out, Type as) {
+    const Type type = isStruct(as) ? as : typeOf(*e);
     const Place place = e->place;
     if (!isStruct(type)) {
         if (sources_.errors() == 0) sources_.report(place, msg::kStructAny);
@@ -241,23 +244,22 @@ bool Lowering::path(const Expr& e) {
 /// fit.
 void Lowering::checkArguments(Expr& call) {
     const auto [from, to] = functions_.equal_range(call.text);
+    if (from == to) return;
+    std::vector<Type> types;
+    for (const auto& a : call.args) types.push_back(typeOf(*a));
     const Expr* wrong = nullptr;
     Type wanted, have;
     for (auto f = from; f != to; ++f) {
         const auto& parameters = f->second.parameters;
         if (parameters.size() != call.args.size()) continue;
-        size_t i = 0;
-        for (; i < parameters.size(); ++i) {
-            const Type t = typeOf(*call.args[i]);
-            const bool list = call.args[i]->kind == ExprKind::ArrayList;
-            if (isStruct(parameters[i]) && derives(t, parameters[i].base)) continue;
-            if ((isStruct(t) || (isStruct(parameters[i]) && !list)) && t.base != parameters[i].base) break;
+        if (accepts(f->second, call.args, types)) return;
+        for (size_t i = 0; !wrong && i < parameters.size(); ++i) {
+            if (isStruct(types[i]) ? derives(types[i], parameters[i].base) : !isStruct(parameters[i]) || isList(*call.args[i]))
+                continue;
+            wrong = call.args[i].get();
+            wanted = parameters[i];
+            have = types[i];
         }
-        if (i == parameters.size()) return;
-        if (wrong) continue;
-        wrong = call.args[i].get();
-        wanted = parameters[i];
-        have = typeOf(*wrong);
     }
     if (!wrong) return;
     if (isStruct(wanted) && isStruct(have)) sources_.report(wrong->place, msg::kStructOther(shown(wanted), shown(have)));
@@ -348,15 +350,18 @@ void Lowering::handleArguments(Expr& call, List& pre) {
     }
 }
 
-/// The structure as which argument `i` of type `have` is passed: its own, or one that it extends.
+/// The structure as which argument `i` of type `have` is passed: its own, or the nearest of those that it extends.
 Base Lowering::wanted(const std::string& function, size_t arguments, size_t i, Type have) const {
     Base found = have.base;
+    int nearest = -1;
     const auto [from, to] = functions_.equal_range(function);
     for (auto f = from; f != to; ++f) {
         const auto& parameters = f->second.parameters;
-        if (parameters.size() != arguments || !derives(have, parameters[i].base)) continue;
-        if (parameters[i].base == have.base) return have.base;
+        if (parameters.size() != arguments) continue;
+        const int steps = extensions(have, parameters[i].base);
+        if (steps < 0 || (nearest >= 0 && steps >= nearest)) continue;
         found = parameters[i].base;
+        nearest = steps;
     }
     return found;
 }

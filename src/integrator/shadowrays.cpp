@@ -2,6 +2,7 @@
 // opacity-only kernel runs for all rays that hit it, wave by wave.
 #include "integrator/shadowrays.h"
 #include "base/exact.h"
+#include "base/hash.h"
 #include "base/memory.h"
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
@@ -15,7 +16,9 @@
 #include "integrator/raystore.h"
 #include "integrator/segmentevents.h"
 #include "integrator/stageset.h"
+#include "services/random.h"
 #include "world/raysets.h"
+#include <bit>
 #include <limits>
 
 namespace alpenglow::integrator {
@@ -326,6 +329,32 @@ void ShadowRays::transmissionRays(const SiteInfo& s, const ShadePoint& p, const 
     }
 }
 
+/// Below PhotonStore::leastLight the probability that a ray is traced is its light's share of that. Neither
+/// the light of a ray nor its random number depends on its batch.
+void ShadowRays::roulette(const Sched& s) {
+    constexpr float kLeastChance = .1f; // bounds the brightest that a survivor becomes
+    const float least = world_.photons_ ? world_.photons_->leastLight : 0;
+    if (!(least > 0) || context_.seen || world_.shadowVisibility_.differs()) return;
+    const auto bits = [](float f) { return uint64_t(std::bit_cast<uint32_t>(f)); };
+    size_t kept = 0;
+    for (ShadowRay& r : queue) {
+        float light = luminance(r.contribution);
+        for (int32_t k = r.more; k >= 0; k = more[size_t(k)].more) light += luminance(more[size_t(k)].contribution);
+        if (light >= 0 && light < least && r.distance > 0 && r.hemisphere < 0 && r.ray && s.isRoot(r.target)) {
+            const float chance = std::max(light / least, kLeastChance);
+            // Of each light sample its own number: its direction is part of the key.
+            const uint64_t way = render::mix64(bits(r.dir.x) << 32 ^ bits(r.dir.y));
+            if (store_.random(*r.ray).one(r.ray->vertex, kShadowRoulette, uint32_t(way >> 32)) >= chance) continue;
+            r.contribution = r.contribution / chance;
+            for (int32_t k = r.more; k >= 0; k = more[size_t(k)].more)
+                more[size_t(k)].contribution = more[size_t(k)].contribution / chance;
+        }
+        if (&queue[kept] != &r) queue[kept] = r;
+        ++kept;
+    }
+    queue.resize(kept);
+}
+
 void ShadowRays::takeAlone() {
     const accel::Accel* const lobesOnly = world_.shadowVisibility_.lobesOnly.get();
     for (const AloneLight& a : alone) {
@@ -348,6 +377,7 @@ void ShadowRays::flush(Sched& s) {
     for (const Contribution& d : settled) accumulator_.contribute(s, d);
     settled.clear();
     records_.follow(s);
+    roulette(s);
     if (queue.empty()) return;
     transmitted_.resize(queue.size());
     transmittances(queue, transmitted_);

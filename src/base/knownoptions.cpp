@@ -207,8 +207,8 @@ constexpr OptionDescription kHiderParameters[] = {
      "raytrace: distance along the axis that a lens by lensDiameter has in focus."},
     {"guide", "int", "1", "0", Used,
      "path: 1: before the first sample, photons find where light reaches surfaces by way of mirrors and clear glass, "
-     "and paths find which parts of flat lamps and skies are visible from where; rays and light samples follow that: "
-     "less noise, and no bias. 0: neither."},
+     "and paths find which parts of flat lamps and skies are visible from where; rays and light samples follow that; "
+     "shadow rays that bring little are traced at random only. Less noise or less time, and no bias. 0: none of these."},
     {"incremental", "", "", "", Ignored, "PRMan; --checkpoint, --spp and --noise say how a picture grows"},
     {"integrationmode", "", "", "", Ignored, "PRMan; the hider path is the way here"},
     {"jitter", "int", "1", "0", Used,

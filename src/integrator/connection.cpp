@@ -42,6 +42,22 @@ void Connection::connect(const BoundLight& light, BatchContext& c) {
         if (v_.lights[b].asked) connectBlock(b, light, c);
 }
 
+void Connection::weighAlone(const VertexBlock& points, const LobeBlock& lobe, const LightBlock& l, const float* kept, bool ahead,
+                            Lanes met) {
+    aloneLanes_ = world_.shadowVisibility_.differs() && l.met ? met & l.asked : 0;
+    if (!aloneLanes_) return;
+    alone_ = v_.shadow;
+    Lanes failed = 0;
+    stages_.contribute(points, lobe, l, kept, 0, ahead, v_.value[0], alone_, &failed);
+}
+
+void Connection::noteAlone(const Site& s, size_t lane, int32_t more) {
+    if (!(aloneLanes_ & 1u << lane)) return;
+    const Color light{alone_.light[0][lane], alone_.light[1][lane], alone_.light[2][lane]};
+    shadows_.alone.push_back(
+        {size_t(v_.sent[lane]), more, light, visibilityBit(s.diffuse ? RayType::Diffuse : RayType::Specular)});
+}
+
 /// Evaluates the lobes of a call site at `points` for their lights, into v_.value; adds the result to shadow rays that were
 /// already sent. pointOf: by lane, index in the batch. Returns the lanes whose ray is still to be sent.
 Lanes Connection::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, LightBlock& l, BatchContext& c,
@@ -53,6 +69,7 @@ Lanes Connection::contribute(const Site& s, const VertexBlock& points, const Lob
     const float* kept = !s.lighting && l.met ? v_.whole : s.diffuse ? l.keptDiffuse : l.keptSpecular;
     const Lanes met = world_.settings_.lightOnly ? 0 : s.diffuse ? l.metDiffuse : l.metSpecular;
     Lanes some = stages_.contribute(points, lobe, l, kept, met, !s.lighting, v_.value[0], v_.shadow, &failed);
+    weighAlone(points, lobe, l, kept, !s.lighting, met);
     for (; failed; failed &= failed - 1) accumulator_.notFinite(c, c.rays[pointOf[std::countr_zero(failed)]], uint32_t(s.number));
     const bool sums = !s.lighting && s.info->trace->sums;
     if (sums && l.emitter) sumUnshadowed(s, points, lobe, l, some, c, pointOf);
@@ -68,6 +85,7 @@ Lanes Connection::contribute(const Site& s, const VertexBlock& points, const Lob
         shadows_.more.push_back(
             {light, c.targets[pointOf[lane]], v_.shareOf(s, pointOf[lane], c.rays[pointOf[lane]]), sums, path, first.more});
         first.more = int32_t(shadows_.more.size()) - 1;
+        noteAlone(s, size_t(lane), first.more);
     }
     return fresh;
 }
@@ -119,6 +137,7 @@ void Connection::sendShadow(const Site& site, size_t point, size_t lane, const V
     s = {row3(v_.shadow.origin), row3(v_.shadow.direction), v_.shadow.length[lane],
          row3(v_.shadow.light),  c.targets[point],          world_.shadesAtOpen_ ? 0 : c.rays[point].shutter(),
          &c.rays[point]};
+    noteAlone(site, lane, -1);
     s.share = v_.shareOf(site, point, c.rays[point]);
     const bool emitter = of.kind == LightKind::Area;
     if (site.sets) s.kind = store_.kindOf({RayType::Transmission, false, site.raysAt(point).set, 0});

@@ -44,12 +44,18 @@ public:
     };
 
 private:
+    /// Sets alone_ for light that rays of the lobe might also find.
+    void weighAlone(const VertexBlock&, const LobeBlock&, const LightBlock&, const float* kept, bool ahead, Lanes met);
+    /// For the light of a lane just added to the queue: ShadowRays::AloneLight.
+    void noteAlone(const Site&, size_t lane, int32_t more);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     void limitShadows(const Site&, const size_t* points, const BoundLight* const* lights, LightBlock&);
     void dropUnhit(const Site&, const size_t* points, const BoundLight* const* lights, const int32_t* queryOf, LightBlock&) const;
     void sumUnshadowed(const Site&, const VertexBlock&, const LobeBlock&, const LightBlock&, Lanes, const BatchContext&,
                        const size_t* points);
     alignas(64) Row draws_; ///< by lane: samples of the light that a lobe takes
+    ShadowBlock alone_;     ///< light as in VertexBlocks::shadow, but without multiple importance sampling
+    Lanes aloneLanes_ = 0;  ///< lanes of alone_ that differ
     Accumulator& accumulator_;
     LightSampling& lightSampling_;
     MediaStacks& media_;

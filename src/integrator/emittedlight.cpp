@@ -12,6 +12,7 @@
 #include "integrator/medium.h"
 #include "integrator/photonstage.h"
 #include "integrator/raystore.h"
+#include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
 #include "world/skytable.h"
 #include <algorithm>
@@ -20,7 +21,25 @@ namespace alpenglow::integrator {
 
 EmittedLight::EmittedLight(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces),
-      media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons), store_(s.store), gathers_(s.gathers) {}
+      media_(s.media), mediumEvents_(s.mediumEvents), photons_(s.photons), store_(s.store), shadows_(s.shadows),
+      gathers_(s.gathers) {}
+
+/// 0 where the shadow ray has all of the weight (ShadowRays::takeAlone).
+Color EmittedLight::differentShadow(const PathRay& r, float distance) {
+    if (r.shadowDiffers) return Color(0);
+    const std::vector<uint8_t>& only = world_.shadowVisibility_.shadowsOnly[r.type() == RayType::Specular];
+    if (only.empty()) return Color(1);
+    RayKind kind = kShadowKind;
+    kind.set.only = only.data();
+    ShadowRay way{};
+    way.origin = r.lobeOrigin + r.dir * geometry::roundingError(r.lobeOrigin);
+    way.dir = r.dir;
+    way.distance = distance * (1 - 1e-5f);
+    way.time = world_.shutterOf(r);
+    way.ray = &r;
+    way.kind = store_.kindOf(kind);
+    return shadows_.transmittance(way);
+}
 
 /// Density of light samples at the origin of a ray in direction w; pdf: of the light alone.
 float EmittedLight::mixedPdf(const PathRay& r, const BoundLight& l, float pdf, const Vec3& w) const {
@@ -86,6 +105,7 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
                     if (l.sky && rules_.pickOne && r.lobeBinding >= 0)
                         pdf *= lightKernels_.chanceOf(number, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
                     weight *= world_.settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+                    if (pdf > 0 && world_.shadowVisibility_.differs()) value[i].Cl *= differentShadow(r, 1e38f);
                 }
                 const Color light = r.weight * value[i].Cl * weight;
                 accumulator_.contribute(sched, {of[i]->target, light, LightEvent::Sky, &r, store_.extraOf(r).share,
@@ -136,7 +156,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
             media_.dim({&part, 1}, {&way, 1}, {&value[i].Cl, 1});
         }
         for (size_t i = first; i < end; ++i) {
-            const LightValue& v = value[i - first];
+            LightValue& v = value[i - first];
             const ShadePoint& p = *met[i].point;
             const PathRay& r = *p.ray;
             if (v.lit && !isFinite(v.Cl)) accumulator_.notFinite(&r, "Cl", light.instance.get());
@@ -149,6 +169,8 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
                 if (rules_.pickOne && r.lobeBinding >= 0)
                     pdf *= lightKernels_.chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+                if (pdf > 0 && world_.shadowVisibility_.differs())
+                    v.Cl *= differentShadow(r, length(intersectsAt(p.surface) - r.lobeOrigin));
             }
             if (const FreeFlight& flown = store_.extraOf(r).flown; flown.medium >= 0 && r.lobeBinding >= 0)
                 weight *= mediumEvents_.shareOfDistance(flown, light);

@@ -14,6 +14,7 @@ class MediaStacks;
 class MediumEvents;
 class PhotonStage;
 class RayStore;
+class ShadowRays;
 struct StageSet;
 
 class EmittedLight final : Stage {
@@ -31,6 +32,8 @@ private:
         const ShadePoint* point;
     };
     void emission(std::span<const Met>, Sched&); ///< sorted by light
+    /// Transmittance of surfaces that only shadow rays see, along the path to light that shadow rays find too.
+    Color differentShadow(const PathRay&, float distance);
     float mixedPdf(const PathRay&, const BoundLight&, float pdf, const Vec3& w) const;
     std::vector<int> litBy_; ///< RayExtra::lit, by query of a light
     Accumulator& accumulator_;
@@ -41,6 +44,7 @@ private:
     MediumEvents& mediumEvents_;
     PhotonStage& photons_;
     RayStore& store_;
+    ShadowRays& shadows_;
     const GatherCalls& gathers_;
 };
 

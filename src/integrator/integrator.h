@@ -93,6 +93,8 @@ struct LightGuideFigures {
 };
 /// Removes the guides of a world.
 void forgetLights(const World&);
+/// Whether paths may be traced before those of the picture: under path, if no procedural waits and no shader bakes.
+bool mayTraceBefore(const World&);
 /// Whether a light of this world may have a guide: a flat emitter, or a sky that is sampled. Lights that vertices choose at
 /// random among many have none.
 bool mayGuideLights(const World&);

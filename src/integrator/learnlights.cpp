@@ -14,8 +14,7 @@ constexpr size_t kAtOnce = 1024;       ///< paths traced together: their rays fi
 constexpr double kLeastFollowing = .3; ///< with fewer samples where a guide is used it is not worth its look-ups
 constexpr size_t kFewest = 40;         ///< samples of a light
 
-/// Whether paths may be traced before the picture.
-bool mayTraceBefore(const WorldImpl& w) {
+bool mayTrace(const WorldImpl& w) {
     if (hasDeferred(w)) return false; // the world may be replaced while rays are traced
     const auto bakes = [](const SiteInfo& s) { return s.kind == SiteKind::Bake || s.kind == SiteKind::Bake3d; };
     return std::none_of(w.bindings_.begin(), w.bindings_.end(), [&](const SurfaceBinding& b) { // they would be baked, too
@@ -32,9 +31,14 @@ LightDomain domainOf(const BoundLight& l) { return l.isSky() ? LightDomain() : L
 
 } // namespace
 
+bool mayTraceBefore(const World& world) {
+    const auto& w = static_cast<const WorldImpl&>(world);
+    return w.accel_ && w.settings_.hider == Hider::Path && mayTrace(w);
+}
+
 bool mayGuideLights(const World& world) {
     const auto& w = static_cast<const WorldImpl&>(world);
-    if (!w.accel_ || !w.photons_ || w.settings_.hider != Hider::Path || !mayTraceBefore(w)) return false;
+    if (!w.accel_ || !w.photons_ || w.settings_.hider != Hider::Path || !mayTrace(w)) return false;
     for (const WorldImpl::LightList& l : w.lightLists_)
         if (l.ofAll || !l.chooser.empty()) return false;
     return std::any_of(w.lights_.begin(), w.lights_.end(), [&](const BoundLight& l) { return mayGuide(w, l); });

@@ -2,6 +2,7 @@
 // opacity-only kernel runs for all rays that hit it, wave by wave.
 #include "integrator/shadowrays.h"
 #include "base/exact.h"
+#include "base/hash.h"
 #include "base/memory.h"
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
@@ -15,7 +16,9 @@
 #include "integrator/raystore.h"
 #include "integrator/segmentevents.h"
 #include "integrator/stageset.h"
+#include "services/random.h"
 #include "world/raysets.h"
+#include <bit>
 #include <limits>
 
 namespace alpenglow::integrator {
@@ -120,7 +123,8 @@ public:
         : stage_(stage), world_(stage.world_), rays_(rays), out_(out),
           counts_(stage.paths_.automaton && stage.paths_.automaton->countsStraight()),
           fading_(std::any_of(rays.begin(), rays.end(), [&](const ShadowRay& r) { return fades(r); })),
-          taken_(fading_ ? rays.size() : 0, Color(0)), straights_(counts_ ? rays.size() : 0, 0) {}
+          taken_(fading_ ? rays.size() : 0, Color(0)), straights_(counts_ ? rays.size() : 0, 0),
+          differs_(stage.world_.shadowVisibility_.opacity ? rays.size() : 0, 0) {}
     bool fading() const { return fading_; }
     void run();
 
@@ -150,6 +154,7 @@ private:
     bool few_ = false;                ///< ways_ and hits_ use the numbers of WorldImpl::byOpacity_.few
     std::vector<Color> taken_;        ///< occlusion by distant surfaces that count in part
     std::vector<uint16_t> straights_; ///< ShadowRays::straights_; a member of its own because shaders on the way may send rays
+    std::vector<uint8_t> differs_;    ///< ShadowRays::differs_; likewise
     std::vector<MediumPart> parts_;
     std::vector<Going> now_, next_;
     std::vector<accel::Ray> ways_, nextWays_; ///< by now_, next_
@@ -171,16 +176,16 @@ void ShadowRays::Passing::begin() {
     few_ =
         world_.byOpacity_.few && std::all_of(rays_.begin(), rays_.end(), [&](auto& r) { return stage_.intersectsOnlyOpaque(r); });
     for (size_t i = 0; i < rays_.size(); ++i) {
-        const bool alone = stage_.intersectsOnlyOpaque(rays_[i]);
-        if (alone && out_[i] == Color(0)) continue;
+        const bool byOpacity = stage_.intersectsOnlyOpaque(rays_[i]);
+        if (byOpacity && out_[i] == Color(0)) continue;
         const Going g{i, 0, rays_[i].media, rays_[i].origin};
-        if (alone && (world_.allOpaque_ || !passes(world_.byOpacity_.clearBounds, rays_[i]))) {
+        if (byOpacity && (world_.allOpaque_ || !passes(world_.byOpacity_.clearBounds, rays_[i]))) {
             leaves(g);
             continue;
         }
         now_.push_back(g);
         ways_.push_back(shadowRay(rays_[i]));
-        if (alone && !few_) ways_.back().only = world_.byOpacity_.clear.data();
+        if (byOpacity && !few_) ways_.back().only = world_.byOpacity_.clear.data();
     }
 }
 
@@ -233,6 +238,7 @@ void ShadowRays::Passing::pass(const Going& from, const accel::Ray& behind, cons
     const SurfaceBinding& b = world_.bindings_[size_t(binding)];
     if (world_.media_.empty() || enters(g, b, h, behind.dir)) {
         const Opacity& opacity = b.opacityFor(rays_[g.index].kind->set.mode);
+        if (opacity.differs && !differs_.empty()) differs_[g.index] = 1;
         if (opacity.kernel) {
             met_.push_back({binding, h, &rays_[g.index], &opacity.kernel});
             asks_.push_back(next_.size());
@@ -267,10 +273,12 @@ void ShadowRays::Passing::run() {
         if (fades(rays_[i])) out_[i] = Color(1) - taken_[i];
     stage_.media_.dim(parts_, rays_, out_);
     stage_.straights_ = std::move(straights_);
+    stage_.differs_ = std::move(differs_);
 }
 
 void ShadowRays::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> out) {
     straights_.clear();
+    differs_.clear();
     Passing passing(*this, rays, out);
     if (world_.allOpaque_ && world_.media_.empty() && !passing.fading()) return blockedByAll(rays, out);
     passing.run();
@@ -321,13 +329,59 @@ void ShadowRays::transmissionRays(const SiteInfo& s, const ShadePoint& p, const 
     }
 }
 
+/// Below PhotonStore::leastLight the probability that a ray is traced is its light's share of that. Neither
+/// the light of a ray nor its random number depends on its batch.
+void ShadowRays::roulette(const Sched& s) {
+    constexpr float kLeastChance = .1f; // bounds the brightest that a survivor becomes
+    const float least = world_.photons_ ? world_.photons_->leastLight : 0;
+    if (!(least > 0) || context_.seen || world_.shadowVisibility_.differs()) return;
+    const auto bits = [](float f) { return uint64_t(std::bit_cast<uint32_t>(f)); };
+    size_t kept = 0;
+    for (ShadowRay& r : queue) {
+        float light = luminance(r.contribution);
+        for (int32_t k = r.more; k >= 0; k = more[size_t(k)].more) light += luminance(more[size_t(k)].contribution);
+        if (light >= 0 && light < least && r.distance > 0 && r.hemisphere < 0 && r.ray && s.isRoot(r.target)) {
+            const float chance = std::max(light / least, kLeastChance);
+            // Of each light sample its own number: its direction is part of the key.
+            const uint64_t way = mix64(bits(r.dir.x) << 32 ^ bits(r.dir.y));
+            if (store_.random(*r.ray).one(r.ray->vertex, kShadowRoulette, uint32_t(way >> 32)) >= chance) continue;
+            r.contribution = r.contribution / chance;
+            for (int32_t k = r.more; k >= 0; k = more[size_t(k)].more)
+                more[size_t(k)].contribution = more[size_t(k)].contribution / chance;
+        }
+        if (&queue[kept] != &r) queue[kept] = r;
+        ++kept;
+    }
+    queue.resize(kept);
+}
+
+void ShadowRays::takeAlone() {
+    const accel::Accel* const lobesOnly = world_.shadowVisibility_.lobesOnly.get();
+    for (const AloneLight& a : alone) {
+        ShadowRay& r = queue[a.ray];
+        if (!(maxComponent(transmitted_[a.ray]) > 0)) continue;
+        bool takes = !differs_.empty() && differs_[a.ray];
+        if (!takes && lobesOnly && r.distance > 0) {
+            accel::Ray way = shadowRay(r);
+            way.mask = a.lobes;
+            way.tfar *= 1 - 1e-4f; // the light itself may be one of them
+            way.only = nullptr;    // by shapes of another tree
+            takes = lobesOnly->occluded(way);
+        }
+        if (takes) (a.more < 0 ? r.contribution : more[size_t(a.more)].contribution) = a.light;
+    }
+    alone.clear();
+}
+
 void ShadowRays::flush(Sched& s) {
     for (const Contribution& d : settled) accumulator_.contribute(s, d);
     settled.clear();
     records_.follow(s);
+    roulette(s);
     if (queue.empty()) return;
     transmitted_.resize(queue.size());
     transmittances(queue, transmitted_);
+    if (!alone.empty()) takeAlone();
     for (size_t i = 0; i < queue.size(); ++i) {
         const ShadowRay& r = queue[i];
         const auto arrives = [&](const Color& contribution, AccumulatorId target, int32_t share, bool areaLight, uint16_t path) {
@@ -360,10 +414,11 @@ void ShadowRays::clear() {
     noted_.clear();
     queue.clear();
     more.clear();
+    alone.clear();
 }
 
 size_t ShadowRays::bytes() const {
-    return bytesOf(queue) + bytesOf(more) + bytesOf(settled) + bytesOf(transmitted_) + bytesOf(rays_);
+    return bytesOf(queue) + bytesOf(more) + bytesOf(settled) + bytesOf(transmitted_) + bytesOf(rays_) + bytesOf(alone);
 }
 
 } // namespace alpenglow::integrator

@@ -40,15 +40,27 @@ public:
     std::vector<MoreLight> more;       ///< further light along rays of the queue
     std::vector<Contribution> settled; ///< contributions that need no ray, added with the queue
 
+    /// For worlds with WorldImpl::shadowVisibility_: light along a ray of the queue if rays of the lobe cannot find it.
+    struct AloneLight {
+        size_t ray;     ///< index in the queue
+        int32_t more;   ///< index in `more`; -1: the ray's own contribution
+        Color light;    ///< without multiple importance sampling
+        uint32_t lobes; ///< visibility bit of the rays of the lobe
+    };
+    std::vector<AloneLight> alone;
+
 private:
     class Passing;
     void passSurfaces(std::span<const ShadowRay>, std::span<Color> out); ///< transmittance of surfaces and media
     /// Whether opaque surfaces are tested first and separately, and others only where a ray may hit them.
     bool intersectsOnlyOpaque(const ShadowRay&) const;
+    void roulette(const Sched&); ///< removes rays of little light at random
+    void takeAlone();            ///< replaces contributions by those of `alone` where only the shadow ray finds the light
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);
     void blockedByAll(std::span<const ShadowRay>, std::span<Color> out);
     std::vector<std::pair<SeenSample, size_t>> noted_; ///< with its ray in the queue
     std::vector<uint16_t> straights_; ///< by ray: surfaces passed straight through; filled only for light path outputs
+    std::vector<uint8_t> differs_;    ///< by ray: passed a surface with Opacity::differs; empty: none did
     std::vector<Color> transmitted_;
     std::vector<accel::Ray> rays_;
     std::vector<uint8_t> blocked_;

@@ -5,7 +5,9 @@
 #include "render/photonpass.h"
 #include "scene/scene.h"
 #include "world/photonmaps.h"
+#include "world/photonstore.h"
 #include <algorithm>
+#include <cmath>
 
 namespace alpenglow::render {
 
@@ -20,14 +22,16 @@ bool refused(const scene::Options& o) {
     return p && !p->numbers.empty() && p->numbers[0] == 0;
 }
 
-/// A ray through each of side x side parts of the complete picture; they are not samples of the picture.
-std::vector<integrator::CameraRay> pilotRays(Job& job, int side) {
+/// `each` rays through each of side x side parts of the complete picture; they are not samples of the picture.
+std::vector<integrator::CameraRay> pilotRays(Job& job, int side, uint32_t each = 1) {
     const scene::Options& o = job.world->frame().options;
     const FilterSampler filter(job.plan.basis.filter);
     std::vector<PixelSample> samples;
     for (int y = 0; y < side; ++y)
         for (int x = 0; x < side; ++x)
-            samples.push_back({x * std::max(o.xres, 1) / side, y * std::max(o.yres, 1) / side, uint32_t(y * side + x)});
+            for (uint32_t k = 0; k < each; ++k)
+                samples.push_back(
+                    {x * std::max(o.xres, 1) / side, y * std::max(o.yres, 1) / side, uint32_t(y * side + x) * each + k});
     NumberRows numbers;
     std::vector<integrator::CameraRay> rays;
     std::vector<float> weights;
@@ -36,17 +40,24 @@ std::vector<integrator::CameraRay> pilotRays(Job& job, int side) {
     return rays;
 }
 
-/// Mean luminance of the complete picture without its brightest 2 %, because a caustic hit by chance is not representative. From
-/// 1,024 samples.
-float brightnessOf(Job& job) {
-    const std::vector<integrator::CameraRay> rays = pilotRays(job, 32);
+/// Luminances of `each` samples in each of side x side places of the complete picture; empty if stopped.
+std::vector<double> luminancesOf(Job& job, int side, uint32_t each) {
+    const std::vector<integrator::CameraRay> rays = pilotRays(job, side, each);
     std::vector<integrator::SampleResult> results(rays.size());
     Diagnostics silent;
     const auto tracer = job.engine.tracer(job.world, silent);
-    if (!tracer->trace(rays, results, &job.halt) || job.halt) return 0;
+    if (!tracer->trace(rays, results, &job.halt) || job.halt) return {};
     std::vector<double> light;
-    for (const integrator::SampleResult& r : results)
-        if (const float l = luminance(r.color); l >= 0) light.push_back(l);
+    for (const integrator::SampleResult& r : results) {
+        const float l = luminance(r.color);
+        light.push_back(l >= 0 ? l : 0);
+    }
+    return light;
+}
+
+/// Mean luminance of the complete picture without its brightest 2 %, because a caustic hit by chance is not representative.
+float brightnessOf(Job& job) {
+    std::vector<double> light = luminancesOf(job, 32, 1);
     std::sort(light.begin(), light.end());
     double sum = 0;
     for (size_t i = 0; i < light.size() * 49 / 50; ++i) sum += light[i];
@@ -99,6 +110,32 @@ bool learnLights(Job& job) {
         integrator::forgetLights(*job.world);
         if (!learn(int(std::sqrt(std::clamp(pixels, 4096., 32768.))))) return false;
     }
+    job.world->flushPrints(false);
+    return !job.pollStop();
+}
+
+bool learnBrightness(Job& job) {
+    constexpr double kMost = .12; // of the median of places that are not black
+    const scene::Options& o = job.world->frame().options;
+    world::PhotonStore* const store = job.world->photons();
+    if (refused(o) || !store || !integrator::mayTraceBefore(*job.world)) return true;
+    const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
+    const std::vector<double> light = luminancesOf(job, int(std::sqrt(std::clamp(pixels / 128, 32., 1024.))), 2);
+    std::vector<double> means;
+    double squares = 0;
+    for (size_t i = 0; i + 1 < light.size(); i += 2) {
+        const double sum = light[i] + light[i + 1];
+        if (!(sum > 0)) continue;
+        means.push_back(sum / 2);
+        const double difference = (light[i] - light[i + 1]) / sum;
+        squares += difference * difference;
+    }
+    if (means.empty()) return !job.pollStop();
+    const auto middle = means.begin() + std::ptrdiff_t(means.size() / 2);
+    std::nth_element(means.begin(), middle, means.end());
+    // The roulette adds a variance of at most leastLight times the light of a sample, so it shall not be more than a part of the
+    // variance that is there: relative to the square of the light, twice the mean square of (a - b) / (a + b), if that is small.
+    store->leastLight = float(kMost * *middle * std::min(1., 2 * squares / double(means.size())));
     job.world->flushPrints(false);
     return !job.pollStop();
 }

@@ -9,5 +9,8 @@ namespace alpenglow::render {
 bool learnCaustics(Job&);
 /// Builds the guides of light samples, likewise.
 bool learnLights(Job&);
+/// Learns how bright the picture is, so that light samples that bring little of it can be left out at random
+/// (world::PhotonStore::leastLight). Returns false if stopped.
+bool learnBrightness(Job&);
 
 } // namespace alpenglow::render

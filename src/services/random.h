@@ -18,6 +18,7 @@ enum RandomUse : uint32_t {
     kAmbient,
     kAlbedo,
     kGuideRay,
+    kShadowRoulette,
     kLightPoint = 1u << 21
 };
 

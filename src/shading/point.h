@@ -143,16 +143,17 @@ struct PathRay {
     const Media* media = nullptr; ///< null: in no volume
     uint32_t vertex = 0;          ///< random number key: hash of the call sites that led here; 0: camera
     int16_t bounces = 0, diffuseBounces = 0, specularBounces = 0;
-    int16_t layers = 0;      ///< transparent surfaces passed since the camera; do not count as bounces
-    uint16_t path = 0;       ///< scene::LightPaths::State so far; 0: its light is in no light path output
-    int16_t scattered = 0;   ///< bounces in media, included in `bounces` and `diffuseBounces`
-    uint16_t asked = 1;      ///< largest number of rays that a waiting kernel on the way is known to request at one point
-    bool first : 1 = true;   ///< requested directly by its target: writes distance and transmission
-    bool counts : 1 = false; ///< its hit writes opacity, depth and AOVs of its camera sample
-    bool quiet : 1 = false;  ///< of a gather() that needs no light: only shaders for its outputs run
-    bool parted : 1 = false; ///< crossed a volume boundary: volumes before `origin` have been applied
-    bool passed : 1 = false; ///< not a camera ray, and has passed a surface: it started at lobeOrigin
-    uint8_t trail = 0;       ///< Trail, as a bit set
+    int16_t layers = 0;             ///< transparent surfaces passed since the camera; do not count as bounces
+    uint16_t path = 0;              ///< scene::LightPaths::State so far; 0: its light is in no light path output
+    int16_t scattered = 0;          ///< bounces in media, included in `bounces` and `diffuseBounces`
+    uint16_t asked = 1;             ///< largest number of rays that a waiting kernel on the way is known to request at one point
+    bool first : 1 = true;          ///< requested directly by its target: writes distance and transmission
+    bool counts : 1 = false;        ///< its hit writes opacity, depth and AOVs of its camera sample
+    bool quiet : 1 = false;         ///< of a gather() that needs no light: only shaders for its outputs run
+    bool parted : 1 = false;        ///< crossed a volume boundary: volumes before `origin` have been applied
+    bool passed : 1 = false;        ///< not a camera ray, and has passed a surface: it started at lobeOrigin
+    bool shadowDiffers : 1 = false; ///< passed a surface that shadow rays may see differently: Opacity::differs
+    uint8_t trail = 0;              ///< Trail, as a bit set
     /// Density of this direction per steradian, times the probability of sampling it at all; < 0: light sampling cannot produce
     /// this direction, so emission counts with weight -lobePdf (docs/design/light-transport.md).
     float lobePdf = -1;

@@ -96,6 +96,8 @@ public:
         queues_[0].back().taken(count);
         queued_ += count;
     }
+    /// Whether no strip waits for this target: its value is a sum of light, of which no shader makes anything else.
+    bool isRoot(AccumulatorId id) const { return open_[size_t(id)].strip < 0; }
     /// Adds light to a target. The sum is exact, so order does not matter. Non-finite values are counted and dropped.
     void add(AccumulatorId id, const Color& c) {
         if (c.x == 0 && c.y == 0 && c.z == 0) return;

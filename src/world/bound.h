@@ -110,6 +110,8 @@ struct LightValue {
 struct Opacity {
     Color constant{1};
     BoundKernel kernel;
+    /// Rays of lobes may see another opacity here: the attributes give shadows their own, or the shader asks for the type of ray.
+    bool differs = false;
     bool opaque() const { return !kernel && constant == Color(1); }
 };
 

@@ -239,6 +239,15 @@ public:
         std::unique_ptr<accel::Accel> few;
         std::vector<uint32_t> numbers;
     } byOpacity_;
+    /// Surfaces that shadow rays and rays of lobes see differently. Between such a pair only one technique finds a light, so it
+    /// gets all of the weight of multiple importance sampling: the shadow ray (docs/design/light-transport.md).
+    struct ShadowVisibility {
+        std::unique_ptr<accel::Accel> lobesOnly; ///< shapes that shadow rays pass (Attribute "visibility"); null: none
+        std::vector<uint8_t> shadowsOnly[2]; ///< by shape: shadow rays alone hit it; of diffuse and of specular rays; empty: none
+        bool opacity = false;                ///< some Opacity::differs
+        bool differs() const { return lobesOnly || opacity || !shadowsOnly[0].empty() || !shadowsOnly[1].empty(); }
+    } shadowVisibility_;
+    void findShadowVisibility(std::span<const uint32_t> visibility);
     bool mediaOverrule_ = false; ///< media differ in priority: inside some, surfaces are no boundaries and stop no ray
     void sortByOpacity(std::span<const uint32_t> visibility);
     /// Sets the photon visibility of surfaces; `visibility`: ray visibility, by shape. Defined in photonattributes.cpp.

@@ -31,6 +31,31 @@ void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
     if (!byOpacity_.few->takesRows()) byOpacity_.few.reset();
 }
 
+void WorldImpl::findShadowVisibility(std::span<const uint32_t> visibility) {
+    constexpr uint32_t kLobes = accel::kDiffuse | accel::kSpecular;
+    std::vector<geometry::ShapeRef> shapes;
+    std::vector<uint32_t> seen;
+    for (size_t i = 0; i < shapes_.size(); ++i) {
+        const uint32_t v = visibility[i];
+        const Opacity& opacity = bindings_[size_t(bindingOf_[i])].opacity;
+        shadowVisibility_.opacity |= opacity.differs;
+        if (!(v & accel::kTransmission) && (v & kLobes)) {
+            shapes.push_back(shapes_[i]);
+            seen.push_back(v & kLobes);
+        } else if ((v & accel::kTransmission) && (v & kLobes) != kLobes) {
+            for (const uint32_t bit : {accel::kDiffuse, accel::kSpecular}) {
+                if (v & bit) continue;
+                std::vector<uint8_t>& only = shadowVisibility_.shadowsOnly[bit == accel::kSpecular];
+                only.resize(shapes_.size());
+                only[i] = 1;
+            }
+        }
+    }
+    if (shapes.empty() || accel_->hasSolids() || deferred_) return;
+    Diagnostics said; // the tree of all shapes has reported
+    shadowVisibility_.lobesOnly = std::make_unique<accel::Accel>(shapes, seen, said, true);
+}
+
 void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
     ray.tnear = std::nextafter(h.t, 0.f); // other surfaces may be at the same distance
     ray.passed = h.distance;
@@ -60,6 +85,7 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
     }
     bool varies = shape.findPrimvar("Os") >= 0;
     Opacity result;
+    if (mode != "shader") result.differs = what != (mode == "opaque" ? "1" : "Os");
     result.constant = mode == "opaque" ? Color(1) : a.opacity;
     if (mode == "opaque" || mode == "primitive" || (mode == "Os" && !varies) || (what == "Os" && !varies)) return result;
     if (what == "1") {
@@ -78,6 +104,7 @@ Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& sha
                                                     {}});
         return result;
     }
+    for (const SiteInfo& s : k.sites) result.differs |= s.kind == SiteKind::RayInfo || s.kind == SiteKind::RayLevel;
     bool constant = !varies && k.kernel->sites().empty();
     for (const auto& in : k.kernel->inputs()) {
         const rsl::InputName name = rsl::InputName::parse(in.name);

@@ -49,6 +49,9 @@ public:
     std::shared_ptr<const CausticGuide> guide;
     /// By light: guides of its samples (world/lightguide.h); empty: no light has one. Changes only while no thread traces.
     std::vector<std::shared_ptr<const LightGuide>> lightGuides;
+    /// Light samples that would bring less luminance than this to a pixel are subject to Russian roulette (ShadowRays); 0: none.
+    /// Changes only while no thread traces.
+    float leastLight = 0;
     float widthOfPasses = 0; ///< photons treat lobes with a smaller spread, in radians, as mirrors
 
 private:

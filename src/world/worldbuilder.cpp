@@ -236,6 +236,7 @@ private:
         w_.accel_->makeSolids(d_);
         findLevels(w_);
         w_.sortByOpacity(visibility);
+        w_.findShadowVisibility(visibility);
         w_.findEye();
         return true;
     }

@@ -2,7 +2,6 @@
 // opacity-only kernel runs for all rays that hit it, wave by wave.
 #include "integrator/shadowrays.h"
 #include "base/exact.h"
-#include "base/hash.h"
 #include "base/memory.h"
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
@@ -16,9 +15,7 @@
 #include "integrator/raystore.h"
 #include "integrator/segmentevents.h"
 #include "integrator/stageset.h"
-#include "services/random.h"
 #include "world/raysets.h"
-#include <bit>
 #include <limits>
 
 namespace alpenglow::integrator {
@@ -28,18 +25,6 @@ ShadowRays::ShadowRays(const StageSet& s)
       records_(s.records), paths_(s.paths), media_(s.media), occlusion_(s.occlusion), opacities_(s.opacities), store_(s.store) {}
 
 namespace {
-accel::Ray shadowRay(const ShadowRay& s) {
-    accel::Ray r;
-    r.org = s.origin;
-    r.dir = s.dir;
-    r.tfar = s.distance;
-    r.time = s.time;
-    r.mask = visibilityBit(s.kind->type);
-    r.sides = s.kind->set.sides;
-    r.only = s.kind->set.only;
-    if (s.ray && s.ray->sample) r.level = s.ray->sample->level;
-    return r;
-}
 /// Whether a ray may hit something in a box; false only if it misses the box.
 bool passes(const geometry::Bounds& b, const ShadowRay& r) {
     const float error = geometry::roundingError(b.lo) + geometry::roundingError(b.hi) + geometry::roundingError(r.origin);
@@ -86,7 +71,7 @@ void ShadowRays::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Colo
     for (size_t i = 0; i < rays.size(); ++i) {
         out[i] = Color(1);
         if (!intersectsOnlyOpaque(rays[i])) continue;
-        rays_.push_back(shadowRay(rays[i]));
+        rays_.push_back(rayOf(rays[i]));
         rays_.back().only = world_.byOpacity_.opaque.data();
         of.push_back(i);
     }
@@ -104,7 +89,7 @@ void ShadowRays::blockedByAll(std::span<const ShadowRay> rays, std::span<Color> 
     for (size_t first = 0; first < rays.size(); first += kAtOnce) {
         const size_t n = std::min(kAtOnce, rays.size() - first);
         rays_.clear();
-        for (const ShadowRay& r : rays.subspan(first, n)) rays_.push_back(shadowRay(r));
+        for (const ShadowRay& r : rays.subspan(first, n)) rays_.push_back(rayOf(r));
         intersector_.occluded(rays_, std::span(blocked_).first(n));
         for (size_t i = 0; i < n; ++i) out[first + i] = blocked_[i] ? Color(0) : Color(1);
     }
@@ -184,7 +169,7 @@ void ShadowRays::Passing::begin() {
             continue;
         }
         now_.push_back(g);
-        ways_.push_back(shadowRay(rays_[i]));
+        ways_.push_back(rayOf(rays_[i]));
         if (byOpacity && !few_) ways_.back().only = world_.byOpacity_.clear.data();
     }
 }
@@ -327,50 +312,6 @@ void ShadowRays::transmissionRays(const SiteInfo& s, const ShadePoint& p, const 
         if (far >= 0) ray.distance = std::min(ray.distance, far);
         out.push_back(ray);
     }
-}
-
-/// Below PhotonStore::leastLight the probability that a ray is traced is its light's share of that. Neither
-/// the light of a ray nor its random number depends on its batch.
-void ShadowRays::roulette(const Sched& s) {
-    constexpr float kLeastChance = .1f; // bounds the brightest that a survivor becomes
-    const float least = world_.photons_ ? world_.photons_->leastLight : 0;
-    if (!(least > 0) || context_.seen || world_.shadowVisibility_.differs()) return;
-    const auto bits = [](float f) { return uint64_t(std::bit_cast<uint32_t>(f)); };
-    size_t kept = 0;
-    for (ShadowRay& r : queue) {
-        float light = luminance(r.contribution);
-        for (int32_t k = r.more; k >= 0; k = more[size_t(k)].more) light += luminance(more[size_t(k)].contribution);
-        if (light >= 0 && light < least && r.distance > 0 && r.hemisphere < 0 && r.ray && s.isRoot(r.target)) {
-            const float chance = std::max(light / least, kLeastChance);
-            // Of each light sample its own number: its direction is part of the key.
-            const uint64_t way = mix64(bits(r.dir.x) << 32 ^ bits(r.dir.y));
-            if (store_.random(*r.ray).one(r.ray->vertex, kShadowRoulette, uint32_t(way >> 32)) >= chance) continue;
-            r.contribution = r.contribution / chance;
-            for (int32_t k = r.more; k >= 0; k = more[size_t(k)].more)
-                more[size_t(k)].contribution = more[size_t(k)].contribution / chance;
-        }
-        if (&queue[kept] != &r) queue[kept] = r;
-        ++kept;
-    }
-    queue.resize(kept);
-}
-
-void ShadowRays::takeAlone() {
-    const accel::Accel* const lobesOnly = world_.shadowVisibility_.lobesOnly.get();
-    for (const AloneLight& a : alone) {
-        ShadowRay& r = queue[a.ray];
-        if (!(maxComponent(transmitted_[a.ray]) > 0)) continue;
-        bool takes = !differs_.empty() && differs_[a.ray];
-        if (!takes && lobesOnly && r.distance > 0) {
-            accel::Ray way = shadowRay(r);
-            way.mask = a.lobes;
-            way.tfar *= 1 - 1e-4f; // the light itself may be one of them
-            way.only = nullptr;    // by shapes of another tree
-            takes = lobesOnly->occluded(way);
-        }
-        if (takes) (a.more < 0 ? r.contribution : more[size_t(a.more)].contribution) = a.light;
-    }
-    alone.clear();
 }
 
 void ShadowRays::flush(Sched& s) {

@@ -91,7 +91,7 @@ struct LightGuideFigures {
     uint64_t lights = 0;          ///< that have a guide
     uint64_t cells = 0, used = 0; ///< used: where light samples follow the guide
 };
-/// Removes the guides of a world.
+/// Removes the light guides of a world.
 void forgetLights(const World&);
 /// Whether paths may be traced before those of the picture: under path, if no procedural waits and no shader bakes.
 bool mayTraceBefore(const World&);

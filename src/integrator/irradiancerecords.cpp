@@ -164,16 +164,8 @@ void IrradianceRecords::blockedRecord(Recording& n) {
         s.kind = n.kind;
         s.media = r.media;
         s.hemisphere = int32_t(occlusion_.hemispheres.size());
-        accel::Ray way;
-        way.org = r.origin;
-        way.dir = r.dir;
-        way.tfar = n.reach;
-        way.time = s.time;
-        way.mask = visibilityBit(n.kind->type);
-        way.sides = n.kind->set.sides;
-        way.only = n.kind->set.only;
         accel::Hit hit;
-        n.ways.push_back(intersector_.intersect(way, hit) ? float(hit.distance) : 1e38f);
+        n.ways.push_back(intersector_.intersect(rayOf(s), hit) ? float(hit.distance) : 1e38f);
     }
     HemisphereRays h;
     h.site = n.site;

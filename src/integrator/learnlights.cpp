@@ -38,7 +38,7 @@ bool mayTraceBefore(const World& world) {
 
 bool mayGuideLights(const World& world) {
     const auto& w = static_cast<const WorldImpl&>(world);
-    if (!w.accel_ || !w.photons_ || w.settings_.hider != Hider::Path || !mayTrace(w)) return false;
+    if (!w.photons_ || !mayTraceBefore(world)) return false;
     for (const WorldImpl::LightList& l : w.lightLists_)
         if (l.ofAll || !l.chooser.empty()) return false;
     return std::any_of(w.lights_.begin(), w.lights_.end(), [&](const BoundLight& l) { return mayGuide(w, l); });

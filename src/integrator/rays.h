@@ -75,6 +75,9 @@ struct HemisphereRays {
     }
 };
 
+/// A shadow ray as the acceleration structure expects it.
+accel::Ray rayOf(const ShadowRay&);
+
 /// The segment from a to b for a shadow ray. If an end is `at`, a shaded point on the surface `s` (may be null), that surface
 /// does not occlude the ray.
 struct ShadowSegment {

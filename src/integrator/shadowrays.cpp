@@ -42,6 +42,19 @@ bool passes(const geometry::Bounds& b, const ShadowRay& r) {
 }
 } // namespace
 
+accel::Ray rayOf(const ShadowRay& s) {
+    accel::Ray r;
+    r.org = s.origin;
+    r.dir = s.dir;
+    r.tfar = s.distance;
+    r.time = s.time;
+    r.mask = visibilityBit(s.kind->type);
+    r.sides = s.kind->set.sides;
+    r.only = s.kind->set.only;
+    if (s.ray && s.ray->sample) r.level = s.ray->sample->level;
+    return r;
+}
+
 ShadowSegment segmentBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s) {
     const Vec3 all = b - a;
     const float distance = length(all);

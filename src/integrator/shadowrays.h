@@ -54,7 +54,6 @@ private:
     void passSurfaces(std::span<const ShadowRay>, std::span<Color> out); ///< transmittance of surfaces and media
     /// Whether opaque surfaces are tested first and separately, and others only where a ray may hit them.
     bool intersectsOnlyOpaque(const ShadowRay&) const;
-    static accel::Ray rayOf(const ShadowRay&);
     void roulette(const Sched&); ///< removes rays of little light at random
     void takeAlone();            ///< replaces contributions by those of `alone` where only the shadow ray finds the light
     void blockedByOpaque(std::span<const ShadowRay>, std::span<Color> out);

@@ -4,23 +4,10 @@
 #include "integrator/raystore.h"
 #include "integrator/shadowrays.h"
 #include "services/random.h"
-#include "world/raysets.h"
 #include <bit>
 
 namespace alpenglow::integrator {
 
-accel::Ray ShadowRays::rayOf(const ShadowRay& s) {
-    accel::Ray r;
-    r.org = s.origin;
-    r.dir = s.dir;
-    r.tfar = s.distance;
-    r.time = s.time;
-    r.mask = visibilityBit(s.kind->type);
-    r.sides = s.kind->set.sides;
-    r.only = s.kind->set.only;
-    if (s.ray && s.ray->sample) r.level = s.ray->sample->level;
-    return r;
-}
 /// Below PhotonStore::leastLight the probability that a ray is traced is its light's share of that. Neither
 /// the light of a ray nor its random number depends on its batch.
 void ShadowRays::roulette(const Sched& s) {

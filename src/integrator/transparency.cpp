@@ -93,7 +93,7 @@ void Transparency::continueBehind(const SurfaceBinding& b, const PathRay& ray, A
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
     r.first = false;
-    r.shadowDiffers |= b.opacity.differs;
+    if (r.passed) r.shadowDiffers |= b.opacity.differs;
     guide_.continueBehind(r, int(&b - world_.bindings_.data()));
     r.path = paths_.next(ray.path, paths_.straight);
     r.media = media_.beyond(b, ray.media, p.surface.n, ray.dir, ray.dir);

@@ -66,6 +66,14 @@ float brightnessOf(Job& job) {
 
 } // namespace
 
+void forgetLearned(Job& job) {
+    world::PhotonStore* const store = job.world->photons();
+    if (!store) return;
+    store->guide.reset();
+    store->lightGuides.clear();
+    store->leastLight = 0;
+}
+
 bool learnCaustics(Job& job) {
     const scene::Options& o = job.world->frame().options;
     if (refused(o) || !job.world->photons() || !world::mayHaveCaustics(*job.world)) return true;

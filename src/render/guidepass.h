@@ -4,6 +4,8 @@
 
 namespace alpenglow::render {
 
+/// Removes what these functions have learned: guides, and the bound of small light samples.
+void forgetLearned(Job&);
 /// Builds the guide unless the options disable it or photons find no caustics. The guide is equal for all parts, samples and
 /// threads of a picture. Returns false if stopped.
 bool learnCaustics(Job&);

@@ -190,7 +190,10 @@ CausticPasses::CausticPasses(Job& job) : job_(job) {}
 bool CausticPasses::begin() {
     const scene::Options& o = job_.world->frame().options;
     begun_ = true;
-    if (!asked(o)) return learnCaustics(job_) && learnLights(job_);
+    if (!asked(o)) {
+        forgetLearned(job_); // of another part of the same world, in the viewer: pilot paths would follow it
+        return learnCaustics(job_) && learnLights(job_) && learnBrightness(job_);
+    }
     if (!job_.world->photons()) return true;
     // One photon for four pixels of the complete picture, so that a crop equals that part of the picture.
     const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));

@@ -188,6 +188,7 @@ struct PathRay {
         } else if (!passed) {
             if (lobePdf < 0 && lobeBinding < 0) lobeOrigin = origin; // nothing uses the point of its lobe
             passed = true;
+            shadowDiffers = false; // as copied from the ray that led to its lobe
         }
         origin = at;
     }

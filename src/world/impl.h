@@ -247,6 +247,7 @@ public:
         bool opacity = false;                ///< some Opacity::differs
         bool differs() const { return lobesOnly || opacity || !shadowsOnly[0].empty() || !shadowsOnly[1].empty(); }
     } shadowVisibility_;
+    /// Fills it; `visibility`: kinds of rays that hit a shape, by shape.
     void findShadowVisibility(std::span<const uint32_t> visibility);
     bool mediaOverrule_ = false; ///< media differ in priority: inside some, surfaces are no boundaries and stop no ray
     void sortByOpacity(std::span<const uint32_t> visibility);

@@ -24,8 +24,8 @@ std::string card(const std::string& attributes, const std::string& surface = "Su
            " Polygon \"P\" [-60 .5 -60  -60 .5 60  60 .5 60  60 .5 -60] AttributeEnd\n";
 }
 
-/// Light of `scene` on a diffuse floor is `open` times its reflectance, with or without the card; on a glossy one what it is
-/// without.
+/// `part` of the light that arrives without `before` arrives behind it, on a diffuse floor and on a glossy one. Without it, a
+/// diffuse floor sends `open` times its reflectance. 3e-4: at the horizon a card leaves .5 / 60 of the angle open.
 void expectLight(const std::string& light, const std::string& before, double part, double open, const std::string& what) {
     for (const bool diffuse : {true, false}) {
         const std::string floor =
@@ -62,6 +62,21 @@ TEST(ShadowVisibility, LightArrivesAsShadowRaysHaveIt) {
                          "Surface \"constant\" Color 0 0 0"),
                     .75, open, of + "shadows by Opacity");
     }
+}
+
+// What the camera saw on its way to the floor is not between the floor and the lamp: the floor sends the same to both sides, and
+// the veil takes half of what goes through it.
+TEST(ShadowVisibility, SurfacesBeforeTheFloorAreNotBetween) {
+    writeShader("veil", "surface veil() { Ci = 0; Oi = isshadowray() ? color 1 : color .5; }\n");
+    Scene s(inWorld(kLamp +
+                    "AttributeBegin Surface \"veil\" Polygon \"P\" [.05 .1 -.1  .15 .1 -.1  .15 .1 .1  .05 .1 .1] "
+                    "AttributeEnd Surface \"slmaterial\" \"color diffusecolor\" [.5 .5 .5]\n" +
+                    kFloor),
+            withShaders(Hider::Path));
+    const Moments behind = s.estimate(rayTo({.3f, .3f, 0}, {0, 0, 0}), samples(6000)),
+                  clear = s.estimate(rayTo({-.3f, .3f, 0}, {0, 0, 0}), samples(6000));
+    EXPECT_NEAR(behind.mean(), .5 * clear.mean(), kZ * std::hypot(behind.se(), .5 * clear.se()));
+    EXPECT_LT(behind.se(), .02 * behind.mean()) << "not precise enough to decide";
 }
 
 // A lamp that shadow rays pass itself is no surface between.

@@ -26,7 +26,6 @@ EmittedLight::EmittedLight(const StageSet& s)
 
 /// 0 where the shadow ray has all of the weight (ShadowRays::takeAlone).
 Color EmittedLight::differentShadow(const PathRay& r, float distance) {
-    if (store_.extraOf(r).flown.medium >= 0) return Color(1); // light sampled in media keeps its weight
     if (r.passed && r.shadowDiffers) return Color(0);
     const std::vector<uint8_t>& only = world_.shadowVisibility_.shadowsOnly[r.type() == RayType::Specular];
     if (only.empty()) return Color(1);

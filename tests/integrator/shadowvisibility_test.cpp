@@ -86,4 +86,31 @@ TEST(ShadowVisibility, TheLampItselfIsNotBetween) {
     expectLight(lamp, "", 1, kFactor, "lamp without shadows");
 }
 
+// A ball of fog below the card, thin and thick: its light is estimated by samples of lights at distances chosen for the medium,
+// at distances chosen for the light, and by rays of the phase function.
+TEST(ShadowVisibility, MediaGetLightAsShadowRaysHaveIt) {
+    writeShader("clearelse", "surface clearelse() { Ci = 0; Oi = isshadowray() ? color 1 : color .5; }\n");
+    writeShader("halfshadow", "surface halfshadow() { Ci = 0; Oi = isshadowray() ? color .25 : color 1; }\n");
+    writeShader("zenith", "light zenith() { solar() Cl = 5 * pow(max(0, ycomp(vtransform(\"world\", -normalize(L)))), 8); }\n");
+    for (const char* sigma : {"1", "20"}) {
+        const std::string fog = "AttributeBegin Surface \"null\" Interior \"medium\" \"color scattering\" [" +
+                                std::string(sigma) + " " + sigma + " " + sigma +
+                                "] Translate 0 -.3 0 Sphere .25 -.25 .25 360 AttributeEnd\n";
+        for (const std::string& light : {kLamp, kSky})
+            for (const auto& [before, part] :
+                 {std::pair{card("Attribute \"visibility\" \"int transmission\" 0 "), 1.},
+                  std::pair{card("Attribute \"visibility\" \"int diffuse\" 0 \"int specular\" 0 "), 0.},
+                  std::pair{card("", "Surface \"clearelse\""), 0.}, std::pair{card("", "Surface \"halfshadow\""), .75}}) {
+                Scene with(inWorld(light + before + fog), withShaders(Hider::Path)),
+                    without(inWorld(light + fog), withShaders(Hider::Path));
+                const CameraRay ray =
+                    rayTo({.2f, .3f, -.1f}, {0, -.3f, 0}); // the fog does not contain the origin of camera space
+                const Moments m = with.estimate(ray, samples(6000)), clear = without.estimate(ray, samples(6000));
+                const std::string what = std::string(sigma) + (light == kSky ? " sky " : " lamp ") + before;
+                EXPECT_NEAR(m.mean(), part * clear.mean(), kZ * std::hypot(m.se(), part * clear.se()) + 3e-4) << what;
+                EXPECT_LT(m.se(), .03 * clear.mean()) << what << ": not precise enough to decide";
+            }
+    }
+}
+
 } // namespace shadowvisibility_test

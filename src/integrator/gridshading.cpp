@@ -23,7 +23,9 @@ void put(float* to, const Color& c) { to[0] = c.x, to[1] = c.y, to[2] = c.z; }
 
 bool GridShading::takes(const WorldImpl& w) {
     const bool ownTime = w.settings_.hider == Hider::Raytrace ? w.shutter_.opens() : !w.shadesAtOpen_;
-    return w.settings_.micropolygons && w.settings_.hider != Hider::Path && !ownTime && w.eye_.count == 0;
+    // Grids start outside of all volumes: other origins than the eye may be inside.
+    const bool outside = w.media_.empty() || (w.eye_.count == 0 && w.frame_->options.projection == "perspective");
+    return w.settings_.micropolygons && w.settings_.hider != Hider::Path && !ownTime && outside;
 }
 
 GridShading::GridShading(Pipeline& p)

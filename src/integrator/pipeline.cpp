@@ -39,6 +39,7 @@
 #include "integrator/vertexlight.h"
 #include "integrator/waitingkernels.h"
 #include "shading/gridpoint.h"
+#include "world/mediaabout.h"
 #include <algorithm>
 #include <limits>
 
@@ -147,6 +148,13 @@ bool Pipeline::trace(std::span<const CameraRay> rays, std::span<SampleResult> ou
     return withinRoom([&] { return traceAll(rays, out); }, [&] { counters() = before; });
 }
 
+/// Rays of orthographic cameras, lenses and stereo pairs do not start at the eye.
+const shading::Media* Pipeline::mediaAtStart(const CameraRay& c) {
+    const WorldImpl& w = world();
+    if (c.origin == Vec3(0, 0, 0)) return w.eye_.count ? &w.eye_ : nullptr;
+    return parts_->media.kept(mediaAbout(w, c.origin, w.shadesAtOpen_ ? 0 : c.shutter));
+}
+
 void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     const WorldImpl& w = world();
     r.origin = c.origin;
@@ -159,7 +167,7 @@ void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     r.sample = &sample;
     r.footprint = {c.width, c.spread};
     r.setStart(c.start);
-    r.media = w.eye_.count && !c.grid ? &w.eye_ : nullptr;
+    if (!w.media_.empty() && !c.grid) r.media = mediaAtStart(c);
     if (c.grid && c.grid->micropolygon) {
         // Sign-extends, as for pixels
         const auto half = [&](int shift) { return int(c.grid->micropolygon >> shift & 0x3fffffff) - (1 << 29); };

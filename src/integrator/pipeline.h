@@ -38,6 +38,7 @@ private:
     bool traceAll(std::span<const CameraRay>, std::span<SampleResult>);
     bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
     void beginRay(const CameraRay&, size_t i, shading::PathRay&); ///< the i-th of a call
+    const shading::Media* mediaAtStart(const CameraRay&);         ///< Interior volumes around its origin; null: none
     void beginTrace();                                            ///< resets per-call state
     void takeResults(std::span<SampleResult>, std::span<const shading::AccumulatorId> roots);
     void endTrace(); ///< adds the scheduler's counts, then calls forget()

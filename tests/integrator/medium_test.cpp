@@ -315,6 +315,10 @@ TEST(Medium, TheEyeInside) {
         Scene s(inWorld(wall() + inside("\"color scattering\" [0 0 0] \"color absorption\" [.6 .6 .6]", "Sphere 3 -3 3 360\n")),
                 withShaders(h));
         EXPECT_NEAR(s.one(rayTo({0, 0, 0}, {0, 0, 1})).x, std::exp(-.6 * 3), 3e-6) << int(h);
+        // As of an orthographic camera, or from a lens: some start inside, some outside.
+        EXPECT_NEAR(s.one(along(2)).x, std::exp(-.6 * std::sqrt(5)), 3e-6) << int(h);
+        EXPECT_NEAR(s.one(along(4)).x, 1, 3e-6) << int(h);
+        EXPECT_NEAR(s.one(rayTo({0, 0, -5}, {0, 0, 1})).x, std::exp(-.6 * 6), 3e-6) << int(h);
     }
 }
 

@@ -107,8 +107,8 @@ public:
     };
     std::vector<Member> members(const Receiver&, size_t position) const;
     /// The structure of this name; null when there is none.
-    const rsl::StructSummary* structure(const std::string& name) const;
-    const rsl::StructSummary* structureOf(const std::string& name, const rsl::StructVariable*) const;
+    const rsl::StructType* structure(const std::string& name) const;
+    const rsl::StructType* structureOf(const std::string& name, const rsl::StructVariable*) const;
     /// The shader or function of this text in which the position is; both null outside.
     struct Around {
         const rsl::Shader* shader = nullptr;

@@ -1,5 +1,6 @@
 // What a name means by itself, and what stands behind "->" and ".": of shader objects, structures and handles.
 #include "cli/lspdocument.h"
+#include "rsl/front/inspect.h"
 #include "rsl/front/visit.h"
 #include <algorithm>
 #include <cctype>
@@ -84,7 +85,7 @@ std::optional<Document::Receiver> Document::receiver(size_t word) const {
     return r;
 }
 
-const rsl::StructSummary* Document::structure(const std::string& name) const {
+const rsl::StructType* Document::structure(const std::string& name) const {
     if (program_)
         for (const auto& s : program_->structs)
             if (s.name == name) return &s;
@@ -92,16 +93,16 @@ const rsl::StructSummary* Document::structure(const std::string& name) const {
 }
 
 /// The structure that `name`, a variable or a chain of members of one, is; null if it is none.
-const rsl::StructSummary* Document::structureOf(const std::string& name, const rsl::StructVariable* variable) const {
+const rsl::StructType* Document::structureOf(const std::string& name, const rsl::StructVariable* variable) const {
     const auto numbered = [&](int n) {
         return n >= 0 && size_t(n) < program_->structs.size() ? &program_->structs[size_t(n)] : nullptr;
     };
     if (!variable) return nullptr;
-    const rsl::StructSummary* s = numbered(variable->structure);
+    const rsl::StructType* s = numbered(variable->structure);
     for (size_t at = variable->name.size(); s && at < name.size();) {
         const size_t begin = at + 2, end = std::min(name.find("->", begin), name.size());
-        const auto m = std::ranges::find(s->members, name.substr(begin, end - begin), &rsl::StructSummary::Member::name);
-        s = m == s->members.end() ? nullptr : numbered(m->structure);
+        const auto m = std::ranges::find(s->members, name.substr(begin, end - begin), &rsl::StructMember::name);
+        s = m == s->members.end() ? nullptr : numbered(m->type.structure);
         at = end;
     }
     return s;
@@ -158,9 +159,9 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
         for (const auto& f : program_->functions) look(f->symbols);
     }
     // As the structure declares them, with its methods.
-    if (const rsl::StructSummary* s = structureOf(r.name, variable)) {
+    if (const rsl::StructType* s = structureOf(r.name, variable)) {
         list.clear(), seen.clear();
-        for (const auto& m : s->members) add({m.name, m.type + " " + m.name, s->name, m.place, false});
+        for (const auto& m : rsl::summary(*s, *program_).members) add({m.name, m.type + " " + m.name, s->name, m.place, false});
         for (const auto& m : s->methods) add({m.name, m.name + "()", s->name, m.place, true});
     }
     // Which shader stands behind a handle, a scene decides: the classes of this text are offered.

@@ -49,12 +49,16 @@ Meaning meaningAt(const Document& d, const Document::Word& w, const std::map<siz
     if (use.shadeop) return {Meaning::Kind::Shadeop, name, "", 0, 0};
     if (const auto* s = d.structure(name)) return declared(name, d.origin(s->place));
     if (d.program())
-        for (const auto& s : d.program()->structs) // a member where the structure is declared
-            for (const auto* list : {&s.members, &s.methods})
-                for (const auto& m : *list)
-                    if (m.name == name && d.isHere(m.place) &&
-                        d.offset(size_t(m.place.line) - 1, size_t(m.place.column) - 1) == w.begin)
-                        return declared(name, d.origin(m.place));
+        for (const auto& s : d.program()->structs) { // a member where the structure is declared
+            const auto here = [&](const auto& m) {
+                return m.name == name && d.isHere(m.place) &&
+                       d.offset(size_t(m.place.line) - 1, size_t(m.place.column) - 1) == w.begin;
+            };
+            for (const auto& m : s.members)
+                if (here(m)) return declared(name, d.origin(m.place));
+            for (const auto& m : s.methods)
+                if (here(m)) return declared(name, d.origin(m.place));
+        }
     if (const auto list = d.functions(name); !list.empty()) return declared(name, d.origin(list[0]->place));
     if (const auto m = d.macro(name))
         return {Meaning::Kind::Macro, name, normalPath(d.path()), int(m->first) + 1, int(m->second) + 1};

@@ -1,6 +1,7 @@
 // What the language server is asked about a place: completion, hover, definition, symbols, signatures.
 #include "cli/languageserver.h"
 #include "cli/manual.h"
+#include "rsl/front/inspect.h"
 #include "shadeops/descriptor.h"
 #include <algorithm>
 #include <cctype>
@@ -73,7 +74,8 @@ std::optional<Document::Member> memberNamed(const Document& d, const Document::R
     return std::nullopt;
 }
 
-std::string structText(const rsl::StructSummary& s) {
+std::string structText(const rsl::StructType& type, const rsl::Program& program) {
+    const rsl::StructSummary s = rsl::summary(type, program);
     std::string t = "struct " + s.name + " {\n";
     for (const auto& m : s.members) t += "    " + m.type + " " + m.name + ";\n";
     for (const auto& m : s.methods) t += "    " + m.name + "()\n";
@@ -222,7 +224,7 @@ Json LanguageServer::hover(const Json& params) {
     } else if (const auto m = receiver ? memberNamed(*d, *receiver, word->first, name) : std::nullopt) {
         text = fenced(m->detail) + "\n" + (m->method ? "method of " : "member of ") + m->of + "\n";
     } else if (const auto* s = d->structure(name)) {
-        text = fenced(structText(*s));
+        text = fenced(structText(*s, *d->program()));
         const Origin o = d->origin(s->place);
         const std::string comment = o.file.empty() ? "" : Document::commentAbove(textOf(o.file), size_t(o.line) - 1);
         if (!comment.empty()) text += "\n" + comment + "\n";

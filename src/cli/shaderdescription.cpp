@@ -227,7 +227,7 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
     d.object = s.object;
     d.annotations = s.annotations;
     d.plugins = shader->program().plugins;
-    d.structs = shader->program().structs;
+    d.structs = rsl::summaries(shader->program());
     const rsl::Program& program = shader->program();
     // What the compiler's library adds stands in a file of its own, "<sampledlight>": users neither set nor call it.
     const auto added = [&](const rsl::Place& place) {

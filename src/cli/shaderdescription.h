@@ -1,6 +1,7 @@
 // Everything that a shader declares, as text and as JSON, for `alpenglow info` and other tools.
 #pragma once
 #include "rsl/compiler.h"
+#include "rsl/front/inspect.h"
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>

@@ -1,11 +1,11 @@
 #include "shadeops/types.h"
-#include <iterator>
 
 namespace alpenglow::shadeops {
 
 int componentCount(Base base) {
     switch (base) {
     case Base::Void:
+    case Base::Struct:
         return 0;
     case Base::Bool:
     case Base::Float:
@@ -24,10 +24,9 @@ int componentCount(Base base) {
 }
 
 std::string toString(Type type) {
-    static constexpr const char* kNames[] = {"void",   "bool",   "float",  "color",  "point",
-                                             "vector", "normal", "matrix", "string", "shader"};
-    const size_t base = static_cast<size_t>(type.base); // beyond the table: structures, numbered by the front end while it reads
-    std::string text = base < std::size(kNames) ? kNames[base] : "structure";
+    static constexpr const char* kNames[] = {"void",   "bool",   "float",  "color",  "point",    "vector",
+                                             "normal", "matrix", "string", "shader", "structure"};
+    std::string text = kNames[static_cast<size_t>(type.base)];
     if (type.array > 0) text += "[" + std::to_string(type.array) + "]";
     else if (type.array < 0) text += "[]";
     return text;

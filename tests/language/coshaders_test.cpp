@@ -272,6 +272,46 @@ TEST(CoShaders, TakeAndChangeStructures) {
     EXPECT_EQ(d.errors(), 0);
 }
 
+TEST(CoShaders, GiveStructures) {
+    ShaderCompiler::Settings settings;
+    settings.useDefaultCache = false;
+    ShaderCompiler compiler(settings);
+    Diagnostics d;
+    const std::string pair = "struct pair { float a = 2; color c = 0; }\n";
+    const auto layer = compiler.loadText(pair + R"(class layer(float gain = 5) {
+        public pair give(float k) { pair p; p->a = k * gain; p->c = color(1, k, 3); return p; }
+        public pair turned(pair p; float k) { pair t; t->a = comp(p->c, 1); t->c = p->a + k; return t; } })",
+                                         "layer.sl", d);
+    const auto top = compiler.loadText(pair + R"(float sum(pair p) { return p->a + 10 * comp(p->c, 1); }
+        pair of(shader h) { return h->give(4); }
+        surface top(output varying float r = 0, q = 0, s = 0, t = 0;)
+        {
+            shader h = getshader("layer");
+            pair p, x = of(h);
+            p = h->give(2);
+            r = p->a * 10 + comp(p->c, 1);
+            q = sum(h->give(3));
+            s = x->a + 100 * comp(x->c, 1);
+            p = h->turned(p, 1);
+            t = p->a + 10 * comp(p->c, 2);
+        })",
+                                       "top.sl", d);
+    ASSERT_TRUE(layer && top);
+    KernelOptions o;
+    o.outputs = {"r", "q", "s", "t"};
+    CoShader c = ShaderCompiler::coShader(layer, "layer");
+    c.numbers["gain"] = {5};
+    o.coShaders.push_back(c);
+    std::vector<std::vector<float>> out;
+    const auto kernel = compiler.kernel(top, o, d);
+    ASSERT_TRUE(kernel && runPoints(*kernel, false, 1, evaluationPoint(), compiler.parameterValues(top, d), out, d));
+    EXPECT_EQ(out[0][0], 102); // a = 2 * 5, c = (1, 2, 3)
+    EXPECT_EQ(out[1][0], 45);  // a = 3 * 5, c = (1, 3, 3)
+    EXPECT_EQ(out[2][0], 420); // a = 4 * 5, c = (1, 4, 3)
+    EXPECT_EQ(out[3][0], 112); // a = 2, c = 10 + 1
+    EXPECT_EQ(d.errors(), 0);
+}
+
 TEST(Structures, AtMostSoMany) {
     std::string text;
     for (int i = 0; i <= limits::kStructs; i++) text += "struct s" + std::to_string(i) + " { float x; }\n";

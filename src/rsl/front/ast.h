@@ -31,8 +31,8 @@ struct Function;
 using ExprPtr = std::unique_ptr<Expr>;
 using StmtPtr = std::unique_ptr<Stmt>;
 
-/// The first of the members that stand where one structure was written, in a call or among the parameters of a function. For
-/// messages, which show what was written.
+/// The first of the members that stand where one structure was written among the parameters of a function. For tools, which show
+/// what was written.
 struct Whole {
     int structure = -1; ///< by its number in Program::structs; -1: no structure begins here
     int members = 0;    ///< from here on
@@ -84,8 +84,11 @@ enum class ExprKind : uint8_t {
     ShadeopCall,  ///< shadeop, signature; args = positional; pairs; `channel` for texture(name[channel]); outputs are lvalues
     FunctionCall, ///< function; args
     Sequence,     ///< args one after the other; its value is that of the last, which is no array
-    Member,       ///< args[0]->text: a member of a structure (gone before checking) or of another shader
-    Method        ///< args[0]->text(args[1], ...): a method of another shader
+    Member,       ///< args[0]->text: a member of another shader; before checking, of a structure, too
+    Method,       ///< args[0]->text(args[1], ...): a method of another shader; before checking, of a structure, too
+    // Only between the checker and the pass that takes structures apart:
+    Part,     ///< args[0]->text: a member of a structure; of an array of them, the array of that member of all
+    Construct ///< a structure from its members, which args are
 };
 enum class ExprOp : uint8_t {
     None,
@@ -130,7 +133,6 @@ struct Expr {
     bool varying = true; ///< by declaration and operands; the IR infers more
     Place place;
     bool handle = false; ///< String: a handle, no text: null (empty), or what RSL has names for, "(this)", "(light)"
-    Whole whole{};       ///< of an argument
     bool part = false;   ///< Variable: one of several that stand where the shader names a structure as a whole
     int height = 1;      ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
     double number = 0;
@@ -204,17 +206,26 @@ struct ShaderParameter {
     std::string defaultText{}; ///< the default as the shader writes it, macros expanded; "" where there is none
 };
 
-/// A structure as the shader declares it, for who shows shaders; types in words.
-struct StructSummary {
-    struct Member {
-        std::string type, name;
-        Place place;
-        int structure = -1; ///< the type's number in Program::structs, if it is a structure or an array of them
-    }; ///< methods have no type
+/// A member of a structure. Those of members that are structures are members of these.
+struct StructMember {
     std::string name;
-    std::vector<Member> members;
-    std::vector<Member> methods;
-    int base = -1; ///< the structure it extends, by its number in Program::structs; -1: none
+    Type type;
+    Storage storage = Storage::Unspecified;
+    ExprPtr init; ///< not checked: its names are those where a variable of the structure is declared; null: zero
+    Place place;
+};
+
+/// A structure as the shader declares it.
+struct StructType {
+    struct Method {
+        std::string name;
+        Place place;
+    };
+    std::string name;
+    std::vector<StructMember> members;
+    std::vector<Method> methods; ///< in the order of the text; they are functions of the program, called "Structure->method"
+    int base = -1;               ///< the structure it extends, by its number in Program::structs; its members come first
+    std::string text;            ///< the definition as written: a repeated, equal one is the same structure
     Place place;
 };
 
@@ -244,7 +255,7 @@ struct Program {
     /// Every function that a shader calls, once for each shader that calls it (its predefined variables and externs are then that
     /// shader's symbols); functions of the main file that nothing calls, once.
     std::vector<std::unique_ptr<Function>> functions;
-    std::vector<StructSummary> structs;                 ///< in the order of the text
+    std::vector<StructType> structs;                    ///< in the order of the text; Type::structure indexes this
     std::string preprocessed;                           ///< text after includes and macros: part of the cache key
     std::vector<std::string> dependencies;              ///< every file read
     std::vector<std::shared_ptr<const Plugin>> plugins; ///< in the order of the text; calls refer to these
@@ -252,10 +263,6 @@ struct Program {
 
 /// A structure as the shader names it, with the brackets of an array of them: "S", "S[3]", "S[]".
 std::string toString(const Whole&, const Program&);
-/// How many structures above `given` the wanted one is: 0 is the same, -1 that it cannot be given for it. A structure can be
-/// given where one that it extends is wanted, if both are arrays or neither is. Those of the same members with different names
-/// are different types.
-int extensions(const Whole& given, const Whole& wanted, const Program&);
 
 struct FrontOptions {
     std::vector<std::string> includePaths;

@@ -30,7 +30,7 @@ std::vector<Checker::ParameterView> Checker::views(const Signature& s, const Sha
 
 std::vector<Checker::ParameterView> Checker::views(const Function& f) {
     std::vector<ParameterView> v;
-    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, false, p->whole});
+    for (const Symbol* p : f.parameters) v.push_back({p->type, p->output, false});
     return v;
 }
 
@@ -50,6 +50,8 @@ Type Checker::wantedType(const ParameterView& p, const Expr& argument) const {
 int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool ignoreOutputs) {
     const Info& info = infos_.at(&argument);
     if (info.any) return 0;
+    if (isStruct(parameter.type)) return structureCost(argument, parameter, ignoreOutputs);
+    if (isStructure(info)) return kNever;
     const Type wanted = wantedType(parameter, argument);
     const bool output = parameter.output;
     if (output && !isVariable(argument) && !ignoreOutputs) return kNever;
@@ -76,14 +78,11 @@ int Checker::argumentCost(Expr& argument, const ParameterView& parameter, bool i
     return costTo(info, wanted.base);
 }
 
-/// The cost of passing what stands for a structure, seen at the first of its members; kNever if the parameter is none, or
-/// another. 0 where no structure begins.
-int Checker::structureCost(const Expr& argument, const ParameterView& parameter) const {
-    const Whole &given = argument.whole, &wanted = parameter.whole;
-    if (given.structure < 0)
-        return wanted.structure < 0 || argument.kind == ExprKind::ArrayList || infos_.at(&argument).any ? 0 : kNever;
-    const int steps = extensions(given, wanted, program_);
-    return steps < 0 ? kNever : std::min(steps * kConversion, kNever - 1);
+/// The cost of passing a structure; what is put out must be a variable of it.
+int Checker::structureCost(const Expr& argument, const ParameterView& parameter, bool ignoreOutputs) const {
+    if (parameter.output && !ignoreOutputs && !isVariable(argument)) return kNever;
+    const int cost = costToStructure(argument, parameter.type);
+    return cost < kNever && parameter.type.array < 0 ? cost + kConversion : cost;
 }
 
 /// Whether it is a string and can be nothing else.
@@ -100,9 +99,8 @@ bool Checker::match(const std::vector<ParameterView>& parameters, bool repeats, 
     choice.cost = 0;
     size_t i = 0;
     for (; i < parameters.size(); ++i) {
-        const int structure = choice.shadeop ? 0 : structureCost(*call.args[i], parameters[i]); // signatures list the members
-        const int c = structure + argumentCost(*call.args[i], parameters[i], ignoreOutputs);
-        if (structure >= kNever || c >= kNever) return false;
+        const int c = argumentCost(*call.args[i], parameters[i], ignoreOutputs || isReceiver(call, i));
+        if (c >= kNever) return false;
         choice.cost = std::min(kNever - 1, choice.cost + c);
     }
     if (repeats && !parameters.empty())
@@ -160,11 +158,11 @@ struct Checker::Candidates {
     Checker& c;
     Expr& call;
     Info& info;
-    const bool broken;  ///< an argument is wrong, which has been reported
-    const bool shipped; ///< the call was put here by a pass before this one: a function of the renderer, whatever the shader has
+    const bool broken; ///< an argument is wrong, which has been reported
     bool known = false;
     bool outputsOnly = false; ///< one would fit if it were not for its output parameters
     std::vector<std::string> texts{}, notes{};
+    std::vector<const Function*> functions{};
 
     void offer(Choice, const std::vector<ParameterView>&, bool repeats, bool pairs, const std::string& text);
     void offer(Function&, const Unit* unit);
@@ -190,6 +188,7 @@ void Checker::Candidates::offer(Function& f, const Unit* unit) {
     choice.nested = !unit;
     choice.unit = unit;
     choice.result = f.result;
+    functions.push_back(&f);
     offer(choice, views(f), false, false, c.signatureText(f));
 }
 
@@ -206,7 +205,6 @@ void Checker::Candidates::offer(const Shadeop* op) {
 
 /// Functions of the shader: the innermost scope that has one that fits, then those of the file.
 void Checker::Candidates::offerFunctions() {
-    if (shipped) return;
     for (size_t i = c.scopes_.size(); i-- > 0 && info.choices.empty();) {
         const auto [from, to] = c.scopes_[i].functions.equal_range(call.text);
         for (auto f = from; f != to; ++f) offer(*f->second, nullptr);
@@ -222,7 +220,7 @@ void Checker::Candidates::offerFunctions() {
 /// A function of the shader's own joins those of its name, and the one that fits best is called; among functions that fit equally
 /// well the first counts: the shader's, then those of plug-ins.
 void Checker::Candidates::offerShadeops() {
-    if (c.unit_ == &c.main_ && !shipped)
+    if (c.unit_ == &c.main_)
         for (const auto& p : c.program_.plugins) offer(p->find(call.text));
     if (c.unit_ == &c.main_ || info.choices.empty()) offer(findShadeop(call.text));
 }
@@ -248,6 +246,11 @@ void Checker::inferResults(const Expr& e, Info& info) {
             infos_.at(e.args[0].get()).array.base == Base::Shader)
             c.result.base = Base::Shader;
     for (const Choice& c : info.choices) {
+        if (isStruct(c.result)) {
+            if (c.result.array && !info.array.array) info.array = c.result;
+            else if (!c.result.array && info.structure < 0) info.structure = c.result.structure;
+            continue;
+        }
         if (c.result.array != 0) {
             info.array = c.result;
             continue;
@@ -260,17 +263,16 @@ void Checker::inferResults(const Expr& e, Info& info) {
     if (!info.array.array) info.either = eitherOf(e, info, infos_);
 }
 
-void Checker::inferCall(Expr& e, Info& info) {
+void Checker::inferCall(Expr& e, Info& info, size_t inferred) {
     nameSources(e), addNormal(e, *unit_);
-    bool broken = false;
-    for (auto& a : e.args) broken |= infer(*a).any;
+    for (size_t i = inferred; i < e.args.size(); ++i) infer(*e.args[i]);
+    if (inferStructureCall(e, info)) return;
+    const bool broken = std::ranges::any_of(e.args, [&](const ExprPtr& a) { return infos_.at(a.get()).any; });
     if (e.text.empty()) {
         info.any = true;
         return; // what is called was reported
     }
-    const bool shipped = e.text.starts_with("::");
-    if (shipped) e.text.erase(0, 2);
-    Candidates candidates{*this, e, info, broken, shipped};
+    Candidates candidates{*this, e, info, broken};
     candidates.offerFunctions();
     candidates.offerShadeops();
     if (!info.choices.empty()) {
@@ -278,6 +280,7 @@ void Checker::inferCall(Expr& e, Info& info) {
         return inferResults(e, info);
     }
     info.any = true;
+    if (!candidates.functions.empty() && wrongStructure(e, candidates.functions)) return;
     if (candidates.known && broken) return; // what went wrong inside was reported
     if (candidates.known) return noMatch(e, candidates.texts, std::move(candidates.notes), candidates.outputsOnly);
     unknownFunction(e);
@@ -320,6 +323,7 @@ void Checker::bestByArguments(std::vector<Choice>& choices) {
         return std::any_of(all.begin(), all.end(), [&](const Choice& better) {
             if (better.cost / kConversion >= c.cost / kConversion || (better.result.array != 0) != (c.result.array != 0))
                 return false;
+            if (isStruct(better.result) || isStruct(c.result)) return better.result == c.result;
             return better.result == c.result || (c.result.array == 0 && implicitCost(better.result.base, c.result.base) < kNever);
         });
     });
@@ -342,11 +346,19 @@ void Checker::preferArray(const Expr& e, Type wanted) {
 
 void Checker::resolveCall(ExprPtr& pointer, Type result) {
     Expr& e = *pointer;
+    if (isArrayCall(e)) return resolveArrayCall(e);
     const Info& info = infos_.at(&e);
     const Choice* best = nullptr;
+    int least = kNever;
     for (const Choice& c : info.choices) {
-        const bool fits = result.array != 0 ? c.result.base == result.base && c.result.array != 0 : c.result == result;
-        if (fits && (!best || c.cost < best->cost)) best = &c;
+        const int steps = isStruct(result) ? structures_.extensions(c.result, result) : 0;
+        const bool fits = isStruct(result)    ? steps >= 0
+                          : result.array != 0 ? c.result.base == result.base && c.result.array != 0
+                                              : c.result == result;
+        const int cost = std::min(c.cost + steps * kConversion, kNever - 1);
+        if (!fits || cost >= least) continue;
+        best = &c;
+        least = cost;
     }
     if (!best) return; // an array where only single values are; reported by the caller's conversion
     const Choice choice = *best;
@@ -361,6 +373,8 @@ void Checker::resolveCall(ExprPtr& pointer, Type result) {
         }
         if (p.output) {
             resolveVariable(a);
+            if (isStruct(p.type) && isStruct(a->type) && a->type.structure != p.type.structure)
+                convert(a, {Base::Struct, a->type.array, p.type.structure});
             written(*a);
         } else if (infos_.at(a.get()).channel && choice.shadeop && i == 0) {
             // texture(name[channel]); (name)[channel] too.

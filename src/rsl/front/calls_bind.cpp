@@ -92,6 +92,7 @@ void Checker::bindPrimitiveVariable(const Expr& e) {
 
 /// resize() and the like change the length of an array, which must be open.
 void Checker::bindArrayChange(const Expr& e) {
+    if (!e.args.empty() && e.args[0]->kind == ExprKind::Part) changesLength(*e.args[0]);
     const Symbol* s = e.args.empty() ? nullptr : e.args[0]->symbol;
     const bool open = s && (s->resizable || (s->origin == Symbol::Origin::FunctionParameter && s->type.array == -1));
     if (s && !open && s->type.base != Base::Void)
@@ -230,6 +231,7 @@ void Checker::madeName(Expr& e, size_t at, const Shadeop& op) {
     if (op.lowering == Lowering::Rsl)
         sources_.report(name.place, msg::kMadeName(op.name), "'" + op.name + "' is a function in RSL");
     ExprPtr& value = e.args[at + 1];
+    refuseStructure(*value);
     const bool variable = isVariable(*value) && !infos_.at(value.get()).any;
     if (variable && !ignored) resolveVariable(value);
     else resolveCheapest(value);
@@ -256,6 +258,7 @@ void Checker::resolvePairs(Expr& e, size_t positional, const Shadeop* op) {
         // "uniform float blur" declares in place; the name is the last word.
         if (const size_t space = pair.name.find_last_of(" \t"); space != std::string::npos) pair.name.erase(0, space + 1);
         ExprPtr value = std::move(e.args[i + 1]);
+        refuseStructure(*value);
         const Info& info = infos_.at(value.get());
         const OptionalParameter* optional = nullptr;
         std::vector<std::string> names;

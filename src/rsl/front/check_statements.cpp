@@ -1,6 +1,7 @@
 #include "base/printable.h"
 #include "rsl/front/checker.h"
 #include "rsl/front/clone.h"
+#include "rsl/front/structs.h"
 #include "rsl/front/visit.h"
 #include <algorithm>
 #include <map>
@@ -13,8 +14,16 @@ namespace alpenglow::rsl::front {
 void Checker::whole(ExprPtr& e) {
     infos_.clear();
     infer(*e);
+    const bool acts = e->kind == ExprKind::Assign || e->kind == ExprKind::ShadeopCall || e->kind == ExprKind::Method;
+    if (!acts) refuseStructure(*e);
     resolveCheapest(e);
     infos_.clear();
+}
+
+bool Checker::isPossible(Symbol& s) {
+    if (arrayPossible(structures_, s.type, s.place, sources_)) return true;
+    s.type = {};
+    return false;
 }
 
 void Checker::valueOf(ExprPtr& e, Type t) {
@@ -63,6 +72,15 @@ bool sameForAll(const Expr& e, Known& known) {
     switch (e.kind) {
     case ExprKind::Variable:
         return known.unclassed.count(e.symbol) > 0 && (known.met.insert(e.symbol), true);
+    case ExprKind::Part: { // of a parameter that is neither uniform nor varying
+        const Expr* root = &e;
+        for (; root->kind == ExprKind::Part; root = root->args[0].get()) {}
+        if (root->kind != ExprKind::Variable || !root->symbol || root->symbol->storage != Storage::Unspecified ||
+            root->symbol->origin != Symbol::Origin::FunctionParameter)
+            return false;
+        known.met.insert(root->symbol);
+        return true;
+    }
     case ExprKind::Cast:
     case ExprKind::Unary:
     case ExprKind::Binary:
@@ -103,6 +121,32 @@ void Checker::assignedToUniform(const Symbol& s, const Expr& value) {
     sources_.report(value.place, msg::kVaryingToUniform(s.name));
 }
 
+/// The value of what has that type. A number for an array is one for each element.
+void Checker::resolveInitial(ExprPtr& value, Type& type) {
+    const Info& info = infos_.at(value.get());
+    if (isStruct(type)) return resolveStructure(value, type);
+    if (isStructure(info)) return resolveTypes(value, type); // reported
+    if (type.array) preferArray(*value, type);
+    if (type.array == -1 && info.listLength >= 0) type.array = std::max(1, info.listLength);
+    if (type.array == -1 && info.array.array > 0) type.array = info.array.array;
+    if (type.array == -1 && info.listLength < 0 && info.array.array == 0 && !info.any &&
+        (value->kind == ExprKind::Number || value->kind == ExprKind::String))
+        type.array = 1; // float a[] = 0: an array of one
+    const bool scalar = type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
+    if (!scalar) return resolveTypes(value, type);
+    // float a[42] = 0: {0, ...}.
+    resolveTypes(value, type.element());
+    auto list = std::make_unique<Expr>();
+    list->kind = ExprKind::ArrayList;
+    list->place = value->place;
+    list->type = type;
+    list->height = value->height + 1;
+    list->varying = value->varying;
+    list->text = "...";
+    list->args.push_back(std::move(value));
+    value = std::move(list);
+}
+
 /// `T x = value`, where x may be an array that takes its length from the value.
 void Checker::initialise(Symbol& s, ExprPtr& value) {
     if (s.type.base == Base::Void) {
@@ -112,31 +156,10 @@ void Checker::initialise(Symbol& s, ExprPtr& value) {
     if (s.origin == Symbol::Origin::ShaderParameter && s.type.array < 0) s.open = true;
     const int errors = sources_.errors();
     infos_.clear();
-    const Info& info = infer(*value);
-    if (s.type.array) preferArray(*value, s.type);
-    if (s.type.array == -1 && info.listLength >= 0) s.type.array = std::max(1, info.listLength);
-    if (s.type.array == -1 && info.array.array > 0) s.type.array = info.array.array;
-    if (s.type.array == -1 && info.listLength < 0 && info.array.array == 0 && !info.any &&
-        (value->kind == ExprKind::Number || value->kind == ExprKind::String))
-        s.type.array = 1; // float a[] = 0: an array of one
-    const bool scalar = s.type.array > 0 && info.listLength < 0 && info.array.array == 0 && !info.any;
-    if (scalar) {
-        // float a[42] = 0: {0, ...}.
-        resolveTypes(value, s.type.element());
-        auto list = std::make_unique<Expr>();
-        list->kind = ExprKind::ArrayList;
-        list->place = value->place;
-        list->type = s.type;
-        list->height = value->height + 1;
-        list->varying = value->varying;
-        list->text = "...";
-        list->args.push_back(std::move(value));
-        value = std::move(list);
-    } else {
-        resolveTypes(value, s.type);
-    }
+    infer(*value);
+    resolveInitial(value, s.type);
     infos_.clear();
-    if (sources_.errors() == errors) assignedToUniform(s, *value);
+    if (sources_.errors() == errors && !isStruct(s.type)) assignedToUniform(s, *value); // of structures: each member, later
 }
 
 void Checker::checkDeclare(Stmt& s) {
@@ -153,7 +176,11 @@ void Checker::checkDeclare(Stmt& s) {
             bindExtern(*d.symbol);
             continue;
         }
-        const bool open = d.symbol->type.array == -1 && d.symbol->type.base != Base::Void;
+        Type& type = d.symbol->type;
+        if (isStruct(type)) isPossible(*d.symbol);
+        const bool open = type.array == -1 && type.base != Base::Void;
+        if (!d.init && isStruct(type) && type.array >= 0 && structures_.hasDefaults(type))
+            d.init = defaultOf(type, d.symbol->place);
         if (d.init) initialise(*d.symbol, d.init);
         if (open) {
             d.symbol->resizable = true;
@@ -174,7 +201,7 @@ void Checker::checkLoopBody(Stmt& s) {
 void Checker::checkReturn(Stmt& s) {
     if (function_ && function_->result.base != Base::Void) {
         if (s.value) valueOf(s.value, function_->result);
-        else sources_.report(s.place, msg::kReturnEmpty(function_->name, toString(function_->result)));
+        else sources_.report(s.place, msg::kReturnEmpty(function_->name, structures_.shown(function_->result)));
         return;
     }
     if (!s.value) return;
@@ -245,6 +272,7 @@ void Checker::statementPair(Stmt& s, ExprPtr token, ExprPtr value) {
     NamedArg pair;
     pair.place = token->place;
     pair.value = std::move(value);
+    refuseStructure(*pair.value);
     const bool variable = isVariable(*pair.value), unknown = infos_.at(pair.value.get()).any;
     if (token->kind != ExprKind::String) {
         NamedArg naming;
@@ -342,6 +370,7 @@ void Checker::checkLight(Stmt& s) {
     s.exprs.clear();
     infos_.clear();
     for (auto& e : given) infer(*e);
+    if (s.kind == StmtKind::Gather) gatherRegion(given);
     size_t next = lightPositions(s, given);
     // Pairs: the value behind "light:x" or "surface:x" is a variable to be filled; "send:..." goes the other way.
     while (next < given.size()) {

@@ -8,6 +8,8 @@
 namespace alpenglow::rsl::front {
 
 void Checker::run() {
+    for (const auto& f : main_.functions)
+        if (f->name.find("->") != f->name.npos) methods_.emplace(f->name, f.get());
     for (auto& s : main_.shaders) checkShader(*s);
     // Callers usually follow what they call. Going backwards checks the helpers of an uncalled function once.
     for (size_t i = main_.functions.size(); i-- > 0;) {
@@ -31,7 +33,9 @@ void Checker::checkShader(Shader& s) {
     scopes_.assign(1, {});
     for (auto& p : s.parameters) {
         Symbol& symbol = *p.symbol;
-        if (symbol.storage == Storage::Unspecified) symbol.storage = Storage::Uniform;
+        if (isStruct(symbol.type)) isPossible(symbol);
+        if (symbol.storage == Storage::Unspecified && !isStruct(symbol.type)) symbol.storage = Storage::Uniform;
+        if (!p.defaultValue && isStruct(symbol.type) && !symbol.type.array) p.defaultValue = defaultOf(symbol.type, symbol.place);
         if (p.defaultValue) initialise(symbol, p.defaultValue); // earlier parameters are visible
         if (!shaderParameters_.emplace(symbol.name, &symbol).second)
             sources_.report(symbol.place, msg::kTwoParameters(symbol.name));
@@ -86,6 +90,7 @@ Function* Checker::instance(Function& f, const Unit& unit, const std::pair<std::
     --instanceDepth_;
     checking_.erase(&f);
     instances_[key] = raw;
+    if (sources_.unused) uncalled_.insert(raw);
     program_.functions.push_back(std::move(copy));
     return raw;
 }
@@ -96,7 +101,8 @@ void Checker::checkBody(Function& f) {
     const int loops = std::exchange(loops_, 0);
     scopes_.emplace_back();
     for (Symbol*& p : f.parameters) {
-        if (p->storage == Storage::Unspecified) {
+        if (isStruct(p->type)) isPossible(*p);
+        if (p->storage == Storage::Unspecified && !isStruct(p->type)) {
             p->storage = isStringLike(p->type.base) ? Storage::Uniform : Storage::Varying;
             if (p->storage == Storage::Varying) unclassed_.insert(p);
         }
@@ -111,10 +117,7 @@ void Checker::checkBody(Function& f) {
     }
     check(f.body);
     scopes_.pop_back();
-    const bool gives = f.result.base != Base::Void || std::ranges::any_of(f.parameters, [](const Symbol* p) {
-                           return p->whole.self && p->name.starts_with("(result)"); // a structure
-                       });
-    if (gives && !endsInReturn(*f.body)) sources_.report(f.place, msg::kReturnMissing(f.name));
+    if (f.result.base != Base::Void && !endsInReturn(*f.body)) sources_.report(f.place, msg::kReturnMissing(f.name));
     if (varyingFunctions_.count(&f) && outer) varyingFunctions_.insert(outer);
     function_ = outer;
     loops_ = loops;
@@ -183,7 +186,7 @@ void Checker::bindExtern(Symbol& declared) {
         s->isExtern = false;
         s->origin = Symbol::Origin::ShaderParameter;
         s->output = true;
-        if (s->storage == Storage::Unspecified) s->storage = Storage::Uniform;
+        if (s->storage == Storage::Unspecified && !isStruct(s->type)) s->storage = Storage::Uniform;
         globalOwner_->push_back(std::move(s));
         outer = globalOwner_->back().get();
     }
@@ -197,18 +200,20 @@ void Checker::bindExtern(Symbol& declared) {
     } else if (outer->type.base != Base::Void) {
         Type a = outer->type, b = declared.type;
         // Old shaders type everything point.
-        const bool same = (a.base == b.base || (a.isPointLike() && b.isPointLike())) && (a.array == b.array || b.array == -1);
-        if (!same) { sources_.report(declared.place, msg::kExternType(declared.name, toString(a), toString(b))); }
+        const bool same = ((a.base == b.base && a.structure == b.structure) || (a.isPointLike() && b.isPointLike())) &&
+                          (a.array == b.array || b.array == -1);
+        if (!same) sources_.report(declared.place, msg::kExternType(declared.name, structures_.text(a), structures_.text(b)));
     }
     scopes_.back().names[declared.name] = outer;
 }
 
 void Checker::declareLocal(Symbol& s) {
-    if (s.storage == Storage::Unspecified) s.storage = isStringLike(s.type.base) ? Storage::Uniform : Storage::Varying;
+    if (s.storage == Storage::Unspecified && !isStruct(s.type))
+        s.storage = isStringLike(s.type.base) ? Storage::Uniform : Storage::Varying;
     auto [at, fresh] = scopes_.back().names.emplace(s.name, &s);
     if (fresh) return;
     if (at->second->type != s.type && at->second->type.base != Base::Void && s.type.base != Base::Void)
-        sources_.report(s.place, msg::kRedeclared(s.name, toString(at->second->type)));
+        sources_.report(s.place, msg::kRedeclared(s.name, structures_.text(at->second->type)));
     else sources_.report(s.place, msg::kRedeclaredNew(s.name));
     at->second = &s;
 }
@@ -229,7 +234,7 @@ std::vector<std::string> Checker::visibleNames() {
 Symbol* Checker::tolerated(Expr& e) {
     if (const auto p = shaderParameters_.find(e.text); p != shaderParameters_.end() && p->second->type.base != Base::Void) {
         sources_.report(e.place, msg::kMissingExtern(e.text),
-                        "declare 'extern " + toString(p->second->type) + " " + e.text + ";'");
+                        "declare 'extern " + structures_.text(p->second->type) + " " + e.text + ";'");
         return p->second;
     }
     const bool onSurface = kind_ && (*kind_ == ShaderKind::Surface || *kind_ == ShaderKind::Displacement);

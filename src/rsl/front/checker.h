@@ -4,6 +4,7 @@
 #pragma once
 #include "rsl/front/conversions.h"
 #include "rsl/front/parser.h"
+#include "rsl/front/structures.h"
 #include <array>
 #include <map>
 #include <unordered_map>
@@ -12,10 +13,16 @@ namespace alpenglow::rsl::front {
 
 class Checker {
 public:
-    Checker(SourceSet& s, Unit& u, Program& p) : sources_(s), main_(u), program_(p) {}
+    Checker(SourceSet& s, Unit& u, Program& p) : sources_(s), main_(u), program_(p), structures_(p.structs) {}
     void run();
     /// For lint: warns of calls that are floats because of arithmetic with a number, although a tuple is wanted.
     void warnOfNumbers();
+    /// Warns if the value is varying and the variable uniform.
+    void assignedToUniform(const Symbol&, const Expr& value);
+    /// The parameter of a function is neither uniform nor varying: it is what the argument is.
+    void classOfArgument(const Symbol& parameter) { unclassed_.insert(&parameter); }
+    /// Whether no shader calls the function: what is wrong with it is a warning.
+    bool isUncalled(const Function& f) const { return uncalled_.count(&f) > 0; }
 
 private:
     /// One interpretation of a call.
@@ -31,10 +38,12 @@ private:
     };
     struct Info {
         std::array<int, kBases> cost;
-        Type array;           ///< the expression is an array of this type
-        int listLength = -1;  ///< it is written {a, b}: an array of whatever its elements become
-        bool any = false;     ///< erroneous, and reported: fits everywhere
-        bool channel = false; ///< name[channel] of a string that is no array
+        Type array;            ///< the expression is an array of this type
+        int structure = -1;    ///< it can be this structure, the first that the choices give
+        bool ofHandle = false; ///< a member or a method of another shader
+        int listLength = -1;   ///< it is written {a, b}: an array of whatever its elements become
+        bool any = false;      ///< erroneous, and reported: fits everywhere
+        bool channel = false;  ///< name[channel] of a string that is no array
         std::vector<Choice> choices;
         /// A call that differs only in what it returns, a float or a tuple, and makes the expression either. Not what is read
         /// from maps and rays: how many channels these bring is in the map, not in the text.
@@ -47,7 +56,6 @@ private:
         Type type;
         bool output;
         bool anyText = false; ///< a string where a handle does as well, or the other way about
-        Whole whole{};
     };
     static std::vector<ParameterView> views(const Signature&, const Shadeop&);
     static std::vector<ParameterView> views(const Function&);
@@ -86,12 +94,13 @@ private:
     void valueOf(ExprPtr&, Type); ///< an expression that is converted to the type
     void whole(ExprPtr&);         ///< an expression of any type
     void initialise(Symbol&, ExprPtr&);
-    void assignedToUniform(const Symbol&, const Expr&); ///< warns if the value is varying
-    static bool endsInReturn(const Stmt&);              ///< whether every path through it returns
+    void resolveInitial(ExprPtr&, Type&);  ///< the value of a variable or member of that type, which may take its length
+    static bool endsInReturn(const Stmt&); ///< whether every path through it returns
 
     // infer (infer.cpp, calls.cpp)
     /// Fills infos_ for the expression and its parts. The reference stays valid until infos_ is cleared.
     Info& infer(Expr&);
+    Info& inferPlain(Expr&); ///< what can be no structure; a structure is reported
     void inferVariable(Expr&, Info&);
     void inferIndex(Expr&, Info&);
     void inferBinary(Expr&, Info&);
@@ -101,14 +110,14 @@ private:
     void inferUnary(Expr&, Info&);
     void inferTuple(Expr&, Info&);
     struct Candidates;
-    void inferCall(Expr&, Info&);
+    void inferCall(Expr&, Info&, size_t inferred = 0); ///< `inferred`: arguments that are inferred already
     void inferResults(const Expr& call, Info&);
     void unknownFunction(const Expr& call); ///< reports, with the nearest name
-    void inferMember(Expr&, Info&);         ///< members and methods of other shaders
+    void inferMember(Expr&, Info&);         ///< members and methods of structures and of other shaders
     /// Whether the call fits the parameters; fills cost and positional of the choice.
     bool match(const std::vector<ParameterView>&, bool repeats, bool pairs, Expr& call, Choice&, bool ignoreOutputs);
     int argumentCost(Expr& argument, const ParameterView& wanted, bool ignoreOutputs);
-    int structureCost(const Expr& argument, const ParameterView& wanted) const;
+    int structureCost(const Expr& argument, const ParameterView& wanted, bool ignoreOutputs) const;
     Type wantedType(const ParameterView&, const Expr& argument) const;
     static void bestByArguments(std::vector<Choice>&); ///< removes choices that others beat by their arguments
     void preferArray(const Expr&, Type wanted);
@@ -129,6 +138,38 @@ private:
     void madeName(Expr& call, size_t at, const Shadeop&);    ///< a pair whose token is computed
     void statementPair(Stmt&, ExprPtr token, ExprPtr value); ///< a pair of illuminance or gather
     void poison(Expr&, Info&);                               ///< after an error: the expression fits everywhere
+
+    // structures (infer_structs.cpp)
+    static Type structureOf(const Info&); ///< the structure or array of structures that it can be; void: none
+    static bool isStructure(const Info&); ///< it can be nothing else
+    bool refuseStructure(const Expr&);    ///< reports a structure where there can be none
+    void inferPart(Expr&, Type of, Info&);
+    void inferMethod(Expr&, Type of, Info&);
+    std::string methodNamed(Type, const std::string& method, size_t arguments) const;
+    bool hasFunction(const std::string& name) const;
+    bool isArrayCall(const Expr&) const;
+    bool inferStructureCall(Expr&, Info&);
+    bool takeApart(Expr& call, const Shadeop&);
+    void gatherRegion(std::vector<ExprPtr>& given);
+    int costToStructure(const Expr&, Type want) const;
+    bool wrongStructure(const Expr& call, const std::vector<const Function*>& functions);
+    void inferStructureAssign(Expr&, Info&);
+    static std::string pathText(const Expr&);
+    static bool isBounded(const Expr& member);
+    static bool isReceiver(const Expr& call, size_t i);
+    // structures (resolve_structs.cpp)
+    ExprPtr defaultOf(Type, Place) const;
+    ExprPtr defaultOf(const StructMember&, Place) const;
+    void resolveConstruct(Expr&, Type);
+    void resolveStructures(Expr& list, Type);
+    void resolveArrayCall(Expr&);
+    void changesLength(const Expr& array);
+    void resolvePart(Expr&);
+    Storage storageOf(const Expr& part) const;
+    void resolveElement(Expr&);
+    void resolveStructure(ExprPtr&, Type);
+    void resolveStructureKind(ExprPtr&, Type);
+    bool isPossible(Symbol&); ///< whether there can be an array of such structures; if not, it is reported and becomes void
 
     // resolveTypes (resolve.cpp, calls.cpp)
     void resolveTypes(ExprPtr&, Type); ///< to this type, with conversions
@@ -164,6 +205,8 @@ private:
     SourceSet& sources_;
     Unit& main_; ///< its shaders move to program_ at the end
     Program& program_;
+    const Structures structures_;
+    std::multimap<std::string, const Function*> methods_; ///< of structures, by "Structure->method"
     // the shader being checked
     Shader* shader_ = nullptr;
     std::optional<ShaderKind> kind_;                              ///< none in a function that no shader calls
@@ -172,11 +215,13 @@ private:
     std::map<std::pair<const Function*, std::string>, Function*> instances_; ///< by function as parsed and renamed shadeop
     std::unordered_set<const Function*> checking_;                           ///< those on the way to here: a call is recursion
     std::unordered_set<const Function*> used_;                               ///< as parsed, called by some shader
+    std::unordered_set<const Function*> uncalled_;                           ///< as checked
     std::unordered_set<const Function*> varyingFunctions_;                   ///< their results vary whatever their arguments are
     std::set<const Symbol*> unclassed_; ///< parameters of functions of no class, which take that of the argument
     std::unordered_map<const Shadeop*, std::unique_ptr<Unit>> rslUnits_;
     std::set<const Shadeop*> reportedUnavailable_; ///< reported once
-    std::set<const Symbol*> reportedNotOutput_;    ///< parameters that are assigned though they are not output: reported once
+    /// Parameters, and members of parameters, that are assigned though they are not output: reported once.
+    std::set<std::pair<const Symbol*, std::string>> reportedNotOutput_;
     struct MadeNumber {
         std::string name;
         Base wanted;

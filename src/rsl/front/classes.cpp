@@ -277,9 +277,9 @@ private:
         bool directed = false; // a light that never sets L is ambient
         const std::string L = written.parameters.empty() ? "L" : written.parameters[0]->name;
         const OfExpression sets = [&](const Expr& e) {
-            if (e.kind == ExprKind::Assign && e.args[0]->text == L) directed = true;
+            if (e.kind == ExprKind::Assign && e.args[0]->kind == ExprKind::Variable && e.args[0]->text == L) directed = true;
             if (e.kind == ExprKind::ShadeopCall)
-                for (const auto& a : e.args) directed |= a->text == L && names_.count(e.text);
+                for (const auto& a : e.args) directed |= a->kind == ExprKind::Variable && a->text == L && names_.count(e.text);
         };
         everyPart(written.body, [](const Stmt&) {}, sets);
         if (!directed) {

@@ -57,8 +57,7 @@ Function* method(const ClassDefinition& c, std::string_view name, size_t paramet
 /// Whether generateSamples() has a parameter of radiance samples.
 bool takesSamples(const Function& f, const Unit& u) {
     return std::ranges::any_of(f.parameters, [&](const Symbol* p) {
-        const size_t index = isStruct(p->type) ? size_t(int(p->type.base) - kFirstStruct) : u.structs.size();
-        return index < u.structs.size() && u.structs[index].name == "__radiancesample";
+        return isStruct(p->type) && u.structs[size_t(p->type.structure)].name == "__radiancesample";
     });
 }
 

@@ -19,7 +19,6 @@ struct Cloner {
         c->varying = e.varying;
         c->handle = e.handle;
         c->place = e.place;
-        c->whole = e.whole;
         c->part = e.part;
         c->height = e.height;
         c->number = e.number;

@@ -7,6 +7,7 @@
 #include "rsl/front/inspect.h"
 #include "rsl/front/library.h"
 #include "rsl/front/lint.h"
+#include "rsl/front/structs.h"
 #include "rsl/messages/messages.h"
 #include <algorithm>
 
@@ -35,24 +36,6 @@ void findPlugins(Unit& unit, const FrontOptions& options, const std::string& fil
     }
 }
 
-/// A structure in words, while its types are still known.
-StructSummary summary(const StructType& s, const Unit& unit) {
-    StructSummary r;
-    r.name = s.name;
-    r.base = s.base;
-    r.place = s.place;
-    for (const StructMember& m : s.members) {
-        std::string type = toString(m.type.element());
-        const size_t index = isStruct(m.type) ? size_t(int(m.type.base) - kFirstStruct) : unit.structs.size();
-        if (isStruct(m.type)) { type = index < unit.structs.size() ? unit.structs[index].name : "struct"; }
-        if (m.storage != Storage::Unspecified) type.insert(0, m.storage == Storage::Uniform ? "uniform " : "varying ");
-        if (m.type.array) type += m.type.array > 0 ? "[" + std::to_string(m.type.array) + "]" : "[]";
-        r.members.push_back({std::move(type), m.name, m.place, index < unit.structs.size() ? int(index) : -1});
-    }
-    for (const auto& f : s.methods) r.methods.push_back({"", f->name, f->place});
-    return r;
-}
-
 std::unique_ptr<Program> compile(const std::string& text, const std::string& name, bool isFile, const FrontOptions& options,
                                  Diagnostics& diagnostics, bool keep = false) {
     SourceSet sources;
@@ -73,13 +56,15 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     Unit& unit = parser.unit();
     addLightMethods(unit, library);
     addLightingMethods(unit, library, sources);
-    for (const StructType& s : unit.structs) program->structs.push_back(summary(s, unit));
-    lowerStructs(unit, sources);
+    program->structs = std::move(unit.structs);
+    checkStructs(*program, sources);
+    addStructMethods(unit, *program);
     expandClasses(unit, sources);
     if (unit.shaders.empty() && unit.functions.empty() && sources.errors() == 0) sources.report({main, 1, 1}, msg::kNoShader);
     findPlugins(unit, options, name, sources, *program);
     Checker checker(sources, unit, *program);
     checker.run();
+    lowerStructs(*program, sources, checker);
     // An include that is missing does no harm when nothing of it is missed.
     for (const auto& m : p.missing) {
         const bool harm = unit.missed || sources.errors() > 0;

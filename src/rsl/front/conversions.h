@@ -17,7 +17,7 @@ inline constexpr int kBroadcast = 16 * kConversion; ///< a number becomes a tupl
 inline constexpr int kLastResort = 1 << 18; ///< Shadeop::lastResort; a tuple where arithmetic with a number makes a call a float
 inline constexpr int kCompared = 1 << 19;   ///< a tuple is compared with a number
 inline constexpr int kNever = 1 << 28;
-inline constexpr int kBases = 10;
+inline constexpr int kBases = 11;
 
 /// Cost of an implicit conversion; 0 for the same type, kNever if there is none.
 int implicitCost(Base from, Base to);

@@ -32,7 +32,7 @@ int Checker::costTo(const Info& info, Base to) {
 
 bool Checker::isVariable(const Expr& e) const {
     if (e.kind == ExprKind::Variable) return true;
-    return e.kind == ExprKind::Index && !e.args.empty() && isVariable(*e.args[0]);
+    return (e.kind == ExprKind::Index || e.kind == ExprKind::Part) && !e.args.empty() && isVariable(*e.args[0]);
 }
 
 void Checker::poison(Expr&, Info& info) { info.any = true; }
@@ -41,6 +41,7 @@ void Checker::poison(Expr&, Info& info) { info.any = true; }
 std::string Checker::describe(Expr& e) {
     const Info& info = infos_.at(&e);
     if (info.any) return "an error";
+    if (isStructure(info)) return structures_.text(structureOf(info));
     if (info.array.array) return toString(info.array);
     if (info.listLength >= 0) return "an array of " + std::to_string(info.listLength);
     if (e.kind == ExprKind::Tuple) return "a triple";
@@ -53,7 +54,7 @@ std::string Checker::componentHint(Base b) {
 }
 
 void Checker::inferUnary(Expr& e, Info& info) {
-    const Info& a = infer(*e.args[0]);
+    const Info& a = inferPlain(*e.args[0]);
     if (a.any) {
         info.any = true;
         return;
@@ -78,7 +79,7 @@ void Checker::inferTuple(Expr& e, Info& info) {
     int cost = 0;
     if (e.kind == ExprKind::Tuple && e.args.size() != 3) info.any = true; // the parser has reported it
     for (auto& a : e.args) {
-        const Info& i = infer(*a);
+        const Info& i = inferPlain(*a);
         const int c = costTo(i, Base::Float);
         if (c >= kNever) {
             sources_.report(a->place, msg::kBadComponent(describe(*a)));
@@ -144,15 +145,23 @@ Checker::Info& Checker::infer(Expr& e) {
         break;
     case ExprKind::Member:
     case ExprKind::Method:
+    case ExprKind::Part:
         inferMember(e, info);
+        break;
+    case ExprKind::Construct:
+        for (auto& a : e.args) infer(*a);
+        info.structure = e.type.structure;
         break;
     }
     return info;
 }
 
-/// Of another shader: member->name, method->name(...).
+/// x->name, x->name(...) of a structure or of another shader.
 void Checker::inferMember(Expr& e, Info& info) {
-    for (auto& a : e.args) infer(*a);
+    const Info& left = infer(*e.args[0]);
+    if (const Type s = structureOf(left); isStruct(s) && !left.any)
+        return e.kind == ExprKind::Method ? inferMethod(e, s, info) : inferPart(e, s, info);
+    for (size_t i = 1; i < e.args.size(); ++i) infer(*e.args[i]);
     for (auto& a : e.args) info.any |= infos_.at(a.get()).any;
     if (info.any) return;
     const Info& of = infos_.at(e.args[0].get());
@@ -161,6 +170,7 @@ void Checker::inferMember(Expr& e, Info& info) {
         info.any = true;
         return;
     }
+    info.ofHandle = true;
     // Its type is known when the shader is bound. Until then it has the expected type.
     for (Base b : kAll) info.cost[int(b)] = b == Base::Float ? 0 : b == Base::Bool ? kNever : 1;
 }
@@ -201,13 +211,15 @@ void Checker::inferVariable(Expr& e, Info& info) {
     e.symbol = s;
     if (s->type.base == Base::Void) info.any = true;
     else if (s->type.array != 0) info.array = s->type;
+    else if (isStruct(s->type)) info.structure = s->type.structure;
     else info.cost[int(s->type.base)] = 0;
 }
 
 void Checker::inferIndex(Expr& e, Info& info) {
     const Info& base = infer(*e.args[0]);
-    const Info& index = infer(*e.args[1]);
-    if (base.any) {
+    const Info& index = inferPlain(*e.args[1]);
+    if (!base.array.array) refuseStructure(*e.args[0]);
+    if (base.any || index.any) {
         info.any = true;
         return;
     }
@@ -221,8 +233,13 @@ void Checker::inferIndex(Expr& e, Info& info) {
         info.cost = base.cost;
         return;
     }
+    if (isStruct(base.array)) {
+        info.structure = base.array.structure;
+        return;
+    }
     if (base.array.array) {
         info.cost[int(base.array.base)] = 0;
+        if (isBounded(*e.args[0])) return;
         const Expr& i = *e.args[1];
         const Symbol* array = e.args[0]->symbol; // one of open length may be longer than its default
         if (i.kind == ExprKind::Number && base.array.array > 0 && !(array && array->open && i.number > -1) &&
@@ -277,7 +294,13 @@ int Checker::operandCost(ExprOp op, const Operation& o, const Info& l, Base a, c
 
 void Checker::inferBinary(Expr& e, Info& info) {
     const Info& l = infer(*e.args[0]);
+    if (e.op == ExprOp::Dot && isStructure(l)) { // what is right of it is no variable
+        sources_.report(e.place, msg::kMemberDot);
+        info.any = true;
+        return;
+    }
     const Info& r = infer(*e.args[1]);
+    for (const auto& a : e.args) refuseStructure(*a);
     if (l.any || r.any) {
         info.any = true;
         return;
@@ -317,6 +340,8 @@ void Checker::inferBinary(Expr& e, Info& info) {
 void Checker::inferAssign(Expr& e, Info& info) {
     const Info& l = infer(*e.args[0]);
     const Info& r = infer(*e.args[1]);
+    if (isStructure(l)) return inferStructureAssign(e, info);
+    refuseStructure(*e.args[1]);
     if (!isVariable(*e.args[0])) {
         if (!l.any) sources_.report(e.place, msg::kNotAssignable);
         info.any = true;
@@ -362,7 +387,7 @@ void Checker::inferAssign(Expr& e, Info& info) {
 }
 
 void Checker::inferConditional(Expr& e, Info& info) {
-    const Info& c = infer(*e.args[0]);
+    const Info& c = inferPlain(*e.args[0]);
     const Info& a = infer(*e.args[1]);
     const Info& b = infer(*e.args[2]);
     int cost = kNever;
@@ -371,8 +396,14 @@ void Checker::inferConditional(Expr& e, Info& info) {
         sources_.report(e.args[0]->place, msg::kBadCondition(describe(*e.args[0])));
         info.any = true;
     }
+    if (!isStructure(a)) refuseStructure(*e.args[2]);
     if (c.any || a.any || b.any) info.any = true;
     if (info.any) return;
+    if (isStructure(a)) {
+        info.structure = a.structure;
+        info.array = a.array;
+        return;
+    }
     for (Base t : kAll)
         if (a.cost[int(t)] < kNever || b.cost[int(t)] < kNever) info.cost[int(t)] = sum(cost, sum(costTo(a, t), costTo(b, t)));
     if (isNumber(a) && isNumber(b)) info.number = a.number ? a.number : b.number;
@@ -399,7 +430,7 @@ void Checker::inferCast(Expr& e, Info& info) {
         }
     }
     if (e.space) {
-        const Info& s = infer(*e.space);
+        const Info& s = inferPlain(*e.space);
         if (!s.any && (costTo(s, Base::String) >= kNever)) {
             sources_.report(e.space->place, msg::kSpaceName);
             info.any = true;
@@ -410,10 +441,16 @@ void Checker::inferCast(Expr& e, Info& info) {
         }
     }
     const Info& a = infer(operand);
+    if (!isStruct(e.type)) refuseStructure(operand);
     if (a.any) {
         // The type is as written, whatever went wrong inside.
-        if (e.type.array == 0) info.cost[int(e.type.base)] = 0;
+        if (e.type.array == 0 && !isStruct(e.type)) info.cost[int(e.type.base)] = 0;
         info.any = true;
+        return;
+    }
+    if (isStruct(e.type)) {
+        if (e.type.array) info.array = e.type;
+        else info.structure = e.type.structure;
         return;
     }
     if (e.type.array != 0 || a.array.array != 0) {

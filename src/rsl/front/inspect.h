@@ -1,8 +1,25 @@
 // A program as far as it can be understood, for tools that look at shaders while they are written.
 #pragma once
 #include "rsl/front/ast.h"
+#include <string>
+#include <vector>
 
 namespace alpenglow::rsl {
+
+/// A structure for who shows shaders; types in words.
+struct StructSummary {
+    struct Member {
+        std::string type, name;
+        Place place;
+    };
+    std::string name;
+    std::vector<Member> members;
+    std::vector<StructType::Method> methods;
+};
+/// A structure of the program in words.
+StructSummary summary(const StructType&, const Program&);
+/// All structures of the program, in the order of the text.
+std::vector<StructSummary> summaries(const Program&);
 
 /// As compileText(), but returns the tree even after errors: never null. A tree with errors in it has
 /// calls without a callee and expressions without a type; it is for reading, not for compiling.

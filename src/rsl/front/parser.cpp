@@ -158,11 +158,11 @@ const Token& Parser::takeName() {
     return t;
 }
 
-Base Parser::takeBase() {
+Type Parser::takeType() {
     const std::string name(take().text);
-    if (const auto base = baseNamed(name)) return *base;
-    if (const auto s = structs_.find(name); s != structs_.end()) return structBase(size_t(s->second));
-    return Base::Shader;
+    if (const auto base = baseNamed(name)) return {*base, 0};
+    if (const auto s = structs_.find(name); s != structs_.end()) return structType(size_t(s->second));
+    return {Base::Shader, 0};
 }
 
 // ---- declarations
@@ -244,10 +244,7 @@ void Parser::topLevel() {
     specifiers();
     const bool typed = atTypeName();
     Type type;
-    if (typed) {
-        type.base = takeBase();
-        type = dimensions(type);
-    }
+    if (typed) { type = dimensions(takeType()); }
     if (peek().kind != Tok::Identifier || !peek(1).is("(")) {
         std::vector<std::string> kinds = {"surface", "displacement", "light", "volume", "imager", "transformation"};
         const std::string near = nearestName(first.text, kinds);

@@ -27,6 +27,7 @@ struct Unit {
     std::vector<std::unique_ptr<Function>> functions;
     std::vector<ClassDefinition> classes;
     std::vector<StructType> structs;
+    std::vector<std::vector<std::unique_ptr<Function>>> methods; ///< of each structure, until they are functions
     bool incomplete = false; ///< text is missing (an include that was not found): it may have declared unknown names
     std::unordered_set<std::string> skipped; ///< names in text that was skipped after an error, which may have declared them
     /// Whether the name may be declared in text that was not read.
@@ -79,7 +80,7 @@ private:
     }
     bool atName() const; ///< of a variable to be declared; old shaders call theirs vector, normal, matrix
     const Token& takeName();
-    Base takeBase();
+    Type takeType();
     std::string shown() const;
 
     // declarations (parser.cpp)
@@ -102,8 +103,8 @@ private:
     Specifiers specifiers();
     bool notYet(Place, const char* what);
     Type dimensions(Type, ExprPtr* length = nullptr);
-    ExprPtr declaredSpace(Base);
-    ExprPtr inSpace(ExprPtr value, Base, const Expr* space);
+    ExprPtr declaredSpace(Type);
+    ExprPtr inSpace(ExprPtr value, Type, const Expr* space);
     int constantLength(const Expr&, Place, bool open);
     Symbol* declare(Owner, const Token& name, Type, const Specifiers&);
     bool functionFollows() const;

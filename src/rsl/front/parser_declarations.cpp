@@ -114,22 +114,23 @@ int Parser::constantLength(const Expr& e, Place place, bool open) {
 }
 
 /// RSL 1 could name a space in a declaration: color "hsv" c = (0.1, 1, 1).
-ExprPtr Parser::declaredSpace(Base base) {
+ExprPtr Parser::declaredSpace(Type type) {
+    const Base base = type.base;
     if (peek().kind != Tok::String || isStringLike(base) || base == Base::Float || base == Base::Void) return nullptr;
     return primary();
 }
 
-ExprPtr Parser::inSpace(ExprPtr value, Base base, const Expr* space) {
+ExprPtr Parser::inSpace(ExprPtr value, Type type, const Expr* space) {
     if (!space) return value;
     if (value->kind == ExprKind::ArrayList) { // each element is in that space
         for (ExprPtr& a : value->args) {
-            a = inSpace(std::move(a), base, space);
+            a = inSpace(std::move(a), type, space);
             grow(*value, *a);
         }
         return value;
     }
     auto e = node(ExprKind::Cast, value->place);
-    e->type.base = base;
+    e->type = type.element();
     e->space = clone(*space);
     adopt(*e, std::move(value));
     return e;
@@ -152,7 +153,7 @@ Symbol* Parser::declare(Owner owner, const Token& name, Type type, const Specifi
 void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::vector<Symbol*>* function,
                         std::vector<ExprPtr>* defaults) {
     Specifiers group;
-    std::optional<Base> base, before; // of this group, of the group before the last ';'
+    std::optional<Type> base, before; // of this group, of the group before the last ';'
     ExprPtr space;
     while (!accept(")")) {
         if (peek().kind == Tok::End || at("{")) failHere(msg::kExpectedToken("')' after the parameters", shown()));
@@ -170,19 +171,20 @@ void Parser::parameters(Owner owner, std::vector<ShaderParameter>* shader, std::
             if (newGroup) {
                 group = specifiers();
                 if (!atTypeName()) failHere(msg::kExpectedType(shown()));
-                base = takeBase();
+                base = takeType();
             }
-            if (newGroup) space = declaredSpace(base.value_or(Base::Void));
-            if (!base && before && *before != Base::Void && atName() && (peek(1).is("=") || peek(1).is(";") || peek(1).is(","))) {
+            if (newGroup) space = declaredSpace(base.value_or(Type{}));
+            if (!base && before && before->base != Base::Void && atName() &&
+                (peek(1).is("=") || peek(1).is(";") || peek(1).is(","))) {
                 base = before;
-                sources_.report(peek().place, msg::kUntypedParameter(peek().text, toString(Type{*base, 0})));
+                sources_.report(peek().place, msg::kUntypedParameter(peek().text, toString(*base)));
             }
             if (!base) failHere(msg::kExpectedParameterType(shown()));
-            if (*base == Base::Void) {
+            if (base->base == Base::Void) {
                 if (at(")")) continue;                              // (void), as in C
                 sources_.report(peek().place, msg::kVoidParameter); // calls with a value for it are no errors
             }
-            Type type = dimensions({*base, 0});
+            Type type = dimensions(*base);
             if (function && (at(",") || at(";") || at(")"))) { // of a prototype: the name may be missing
                 function->push_back(declare(owner, peek(), type, group));
                 continue;

@@ -142,7 +142,7 @@ ExprPtr Parser::unary() {
 ExprPtr Parser::castExpression() {
     Depth depth(*this);
     auto e = node(ExprKind::Cast, peek().place);
-    e->type.base = takeBase();
+    e->type = takeType();
     if (e->type.base == Base::Void) fail(e->place, msg::kVoidValue);
     if (at("[") && peek(1).is("]")) {
         take();
@@ -165,7 +165,7 @@ ExprPtr Parser::castExpression() {
         grow(*e, *e->space);
     }
     ExprPtr operand = unary();
-    if (e->space && operand->kind == ExprKind::ArrayList) return inSpace(std::move(operand), e->type.base, e->space.get());
+    if (e->space && operand->kind == ExprKind::ArrayList) return inSpace(std::move(operand), e->type, e->space.get());
     adopt(*e, std::move(operand));
     return e;
 }
@@ -288,7 +288,7 @@ ExprPtr Parser::parenthesis() {
         const std::string type(peek().text);
         sources_.report(place, msg::kCastParentheses, "write " + type + "(...) or " + type + " x");
         ExprPtr e = node(ExprKind::Cast, place);
-        e->type.base = takeBase();
+        e->type = takeType();
         take();
         adopt(*e, unary());
         return e;

@@ -41,15 +41,15 @@ void Parser::structureMember(StructType& type, std::vector<size_t>& methods) {
     }
     if (at(type.name) && !structs_.count(type.name) && peek(1).kind == Tok::Identifier) fail(peek().place, msg::kStructRecursive);
     if (!atTypeName()) failHere(msg::kExpectedMemberType(shown()));
-    const Base base = takeBase();
+    const Type base = takeType();
     if (call(0)) return skipMethod(begin, methods);
     if (at("[") && peek(1).is("]") && call(2)) {
         take(), take();
         return skipMethod(begin, methods);
     }
-    if (base == Base::Void) fail(s.place, msg::kStructVoid);
+    if (base.base == Base::Void) fail(s.place, msg::kStructVoid);
     const ExprPtr space = declaredSpace(base);
-    const Type group = dimensions({base, 0});
+    const Type group = dimensions(base);
     do {
         if (peek().kind != Tok::Identifier) failHere(msg::kExpectedName("a member", shown()));
         StructMember m;
@@ -93,11 +93,11 @@ void Parser::structureMethods(size_t index, const std::vector<size_t>& methods) 
             specifiers();
             const bool typed = !(peek().kind == Tok::Identifier && peek(1).is("("));
             Type result{};
-            if (typed) {
-                result.base = takeBase();
-                result = dimensions(result);
+            if (typed) { result = dimensions(takeType()); }
+            if (auto f = function(result, typed)) {
+                unit_.structs[index].methods.push_back({f->name, f->place});
+                unit_.methods[index].push_back(std::move(f));
             }
-            if (auto f = function(result, typed)) unit_.structs[index].methods.push_back(std::move(f));
         } catch (const SyntaxError&) {
             if (tooDeep_) throw;
         }
@@ -140,6 +140,7 @@ void Parser::structure() {
     const size_t index = unit_.structs.size();
     structs_[type.name] = int(index);
     unit_.structs.push_back(std::move(type));
+    unit_.methods.emplace_back();
     structureMethods(index, methods);
 }
 

@@ -172,8 +172,8 @@ StmtPtr Parser::declaration(bool member) {
     auto s = make(StmtKind::Declare, peek().place);
     Specifiers spec = specifiers();
     if (!atTypeName()) failHere(msg::kExpectedType(shown()));
-    Type type{takeBase(), 0};
-    const ExprPtr space = declaredSpace(type.base);
+    Type type = takeType();
+    const ExprPtr space = declaredSpace(type);
     ExprPtr shared;
     type = dimensions(type, member ? nullptr : &shared);
     if (functionFollows() || (type.base == Base::Void && peek(1).is("("))) {
@@ -202,7 +202,7 @@ StmtPtr Parser::declaration(bool member) {
         if (accept("=")) {
             if (spec.isExtern) sources_.report(name.place, msg::kExternValue);
             try {
-                s->declarators.back().init = inSpace(at("{") ? arrayList() : assignment(), type.base, space.get());
+                s->declarators.back().init = inSpace(at("{") ? arrayList() : assignment(), type.element(), space.get());
             } catch (const SyntaxError&) {
                 // The name is declared all the same: its uses are no errors.
                 if (tooDeep_) throw;

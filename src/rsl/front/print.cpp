@@ -80,6 +80,10 @@ std::string print(const Expr& e) {
         return list(e, "then" + type);
     case ExprKind::Member:
         return list(e, "->" + e.text + type);
+    case ExprKind::Part:
+        return list(e, "part " + e.text + type);
+    case ExprKind::Construct:
+        return list(e, "make" + type);
     case ExprKind::Method:
         return list(e, "->" + e.text + "()" + type);
     case ExprKind::FunctionCall:

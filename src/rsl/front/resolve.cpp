@@ -32,9 +32,14 @@ void Checker::convert(ExprPtr& e, Type to) {
 
 void Checker::resolveTypes(ExprPtr& e, Type want) {
     const Info& info = infos_.at(e.get());
+    if (isStruct(want)) return resolveStructure(e, want);
     if (info.any || want.base == Base::Void) {
         resolveCheapest(e);
         if (want.base != Base::Void) e->type = want;
+        return;
+    }
+    if (refuseStructure(*e)) {
+        e->type = want;
         return;
     }
     if (want.array != 0) return resolveArray(e, want);
@@ -87,6 +92,7 @@ void Checker::resolveCheapest(ExprPtr& e) {
         // Children may hold what is worth a look (nothing is reported twice); types no longer matter.
         return;
     }
+    if (isStructure(info)) return resolveStructure(e, structureOf(info));
     if (info.array.array) return resolveArray(e, info.array);
     if (info.listLength >= 0) {
         sources_.report(e->place, msg::kListPlace);
@@ -110,7 +116,7 @@ void Checker::resolveIndexed(ExprPtr& e) {
 
 void Checker::resolveCondition(ExprPtr& e) {
     const Info& info = infos_.at(e.get());
-    if (info.any) {
+    if (info.any || refuseStructure(*e)) {
         e->type = {Base::Bool, 0};
         return;
     }
@@ -182,6 +188,8 @@ void Checker::resolveArray(ExprPtr& e, Type want) {
     if (e->kind == ExprKind::Variable) {
         e->type = have;
         e->varying = e->symbol->storage != Storage::Uniform;
+    } else if (e->kind == ExprKind::Part) {
+        resolvePart(*e);
     } else if (e->kind == ExprKind::ShadeopCall) {
         resolveCall(e, want.array > 0 ? want : have);
     } else if (e->kind == ExprKind::Assign) {
@@ -204,6 +212,7 @@ void Checker::resolveArray(ExprPtr& e, Type want) {
 void Checker::resolveVariable(ExprPtr& e) {
     const Info& info = infos_.at(e.get());
     if (info.any) return;
+    if (isStructure(info)) return resolveStructure(e, structureOf(info));
     if (info.array.array) return resolveArray(e, info.array);
     resolveAs(e, cheapest(info));
 }
@@ -305,6 +314,8 @@ void Checker::resolveAs(ExprPtr& e, Base t) {
     case ExprKind::Member:
     case ExprKind::Method:
         return resolveHandle(e, t);
+    case ExprKind::Part:
+        return resolvePart(*e);
     case ExprKind::Binary:
         return resolveBinary(e, t);
     case ExprKind::Assign:
@@ -321,6 +332,7 @@ void Checker::resolveAs(ExprPtr& e, Base t) {
         return resolveParts(e, t);
     case ExprKind::ArrayList:
     case ExprKind::FunctionCall:
+    case ExprKind::Construct:
         return;
     }
 }
@@ -423,10 +435,8 @@ void Checker::resolveAssign(ExprPtr& e) {
     written(*e->args[0]);
     const Expr* root = e->args[0].get();
     while (root->kind == ExprKind::Index) root = root->args[0].get();
-    if (root->symbol) {
-        if (root->symbol->origin != Symbol::Origin::Global) assignedToUniform(*root->symbol, *e->args[1]);
-        if (root == e->args[0].get()) e->varying = e->args[1]->varying;
-    }
+    if (root->symbol && root->symbol->origin != Symbol::Origin::Global) assignedToUniform(*root->symbol, *e->args[1]);
+    if (root == e->args[0].get() && (root->symbol || root->kind == ExprKind::Part)) e->varying = e->args[1]->varying;
 }
 
 /// The function being checked needs a point that is shaded. construct() runs before there is any.
@@ -441,10 +451,11 @@ bool Checker::inConstruct() const { return shader_ && shader_->object && functio
 /// Something is stored in this variable: is that allowed?
 void Checker::written(const Expr& variable) {
     const Expr* root = &variable;
-    while (root->kind == ExprKind::Index) root = root->args[0].get();
+    while (root->kind == ExprKind::Index || root->kind == ExprKind::Part || root->kind == ExprKind::Cast)
+        root = root->args[0].get();
     const Symbol* s = root->symbol;
     if (!s) return;
-    const std::string& name = s->name;
+    const std::string name = pathText(variable);
     const bool constructs = inConstruct();
     if (s->isConstant && s->origin == Symbol::Origin::Local && !constructs) {
         sources_.report(variable.place, msg::kConstantWritten(name),
@@ -462,10 +473,11 @@ void Checker::written(const Expr& variable) {
         else sources_.report(variable.place, kind_ ? msg::kReadOnlyCopyIn(name, toString(*kind_)) : msg::kReadOnlyCopy(name));
         break;
     case Symbol::Origin::ShaderParameter:
-        if (!s->output && reportedNotOutput_.insert(s).second) sources_.report(variable.place, msg::kNotOutput(name));
+        if (!s->output && reportedNotOutput_.insert({s, name}).second) sources_.report(variable.place, msg::kNotOutput(name));
         break;
     case Symbol::Origin::FunctionParameter:
-        if (!s->output && reportedNotOutput_.insert(s).second) sources_.report(variable.place, msg::kNotOutputOfFunction(name));
+        if (!s->output && reportedNotOutput_.insert({s, name}).second)
+            sources_.report(variable.place, msg::kNotOutputOfFunction(name));
         break;
     }
 }

@@ -1,36 +1,28 @@
-// Structures, and how they go: before anything is checked, every variable of a structure becomes one variable for each of its
-// members, named as the shader writes them ("ray->origin"). Behind this pass there are no structures.
+// Structures before and behind the checker: what is wrong with their definitions, their methods as functions, and how they go.
 #pragma once
-#include "rsl/front/ast.h"
+#include "rsl/front/structures.h"
 
 namespace alpenglow::rsl::front {
 
+class Checker;
 class SourceSet;
 struct Unit;
 
-struct StructMember {
-    std::string name;
-    Type type;
-    Storage storage = Storage::Unspecified;
-    ExprPtr init; ///< null: zero
-    Place place;
-};
+/// The type of one structure of this number, or of so many.
+inline Type structType(size_t number, int array = 0) { return {Base::Struct, array, int16_t(number)}; }
 
-struct StructType {
-    std::string name;
-    std::vector<StructMember> members;
-    std::vector<std::unique_ptr<Function>> methods;
-    int base = -1;    ///< the structure it extends, by its number in Unit::structs; its members come first
-    std::string text; ///< the definition as written: a repeated, equal one is the same structure
-    Place place;
-};
+/// Whether there can be an array of such structures; if not, that is reported: what changes its length has no place in one.
+bool arrayPossible(const Structures&, Type, Place, SourceSet&);
 
-/// Until they are gone, types of structures are bases above the built-in ones: their number in Unit::structs behind this one.
-inline constexpr int kFirstStruct = 64;
-inline bool isStruct(Type t) { return int(t.base) >= kFirstStruct; }
-inline Base structBase(size_t index) { return Base(kFirstStruct + int(index)); }
+/// Reports members that cannot be, and makes them numbers: a structure inside itself would have no end.
+void checkStructs(Program&, SourceSet&);
 
-/// Puts members for structures in all shaders, classes and functions of the unit. What has no meaning is reported and left out.
-void lowerStructs(Unit&, SourceSet&);
+/// Methods of structures to functions of the unit, called "Structure->method". Their first parameter, "this", is the structure.
+/// Before names are known: it reads texts only.
+void addStructMethods(Unit&, const Program&);
+
+/// Takes all structures of a checked program apart: a variable becomes one variable for each plain member, named as the shader
+/// writes it ("ray->origin"). No expression or statement has a structure behind this pass. It stands what is wrong, as reported.
+void lowerStructs(Program&, SourceSet&, Checker&);
 
 } // namespace alpenglow::rsl::front

@@ -1,9 +1,12 @@
 // Methods of structures: each becomes a function whose first parameter, "this", is the structure. Bare names of members and
 // methods in its body mean those of this structure, unless a parameter or a local variable hides them.
 #include "rsl/front/clone.h"
-#include "rsl/front/structs_lowering.h"
+#include "rsl/front/nodes.h"
+#include "rsl/front/parser.h"
+#include "rsl/front/structs.h"
 #include "rsl/front/visit.h"
 #include "rsl/front/writes.h"
+#include <map>
 #include <set>
 #include <utility>
 
@@ -122,131 +125,44 @@ private:
 
 } // namespace
 
-void Lowering::methods() {
+void addStructMethods(Unit& unit, const Program& program) {
     struct Known {
         std::set<std::string> names, changing;
     };
-    std::vector<Known> known(unit_.structs.size()); // what a structure has, those that extend it have, too
+    std::vector<Known> known(program.structs.size()); // what a structure has, those that extend it have, too
     std::map<std::string, std::set<size_t>> puttingOut;
-    for (const StructType& type : unit_.structs)
-        for (const auto& f : type.methods)
+    for (const auto& methods : unit.methods)
+        for (const auto& f : methods)
             for (size_t i = 0; i < f->parameters.size(); ++i)
                 if (auto& out = puttingOut[f->name]; f->parameters[i]->output) out.insert(i);
-    for (size_t i = 0; i < unit_.structs.size(); ++i) {
-        StructType& type = unit_.structs[i];
+    for (size_t i = 0; i < program.structs.size(); ++i) {
+        const StructType& type = program.structs[i];
+        auto& methods = unit.methods[i];
         if (type.base >= 0 && size_t(type.base) < i) known[i] = known[size_t(type.base)];
         std::set<std::string>&names = known[i].names, &changing = known[i].changing;
-        for (const auto& f : type.methods) names.insert(f->name);
+        for (const auto& f : methods) names.insert(f->name);
         // A method that calls one that changes the structure changes it, too.
         for (size_t before = size_t(-1); before != changing.size();) {
             before = changing.size();
-            for (auto& f : type.methods) {
+            for (auto& f : methods) {
                 Selfs selfs(type, changing, names, puttingOut);
                 selfs.run(*f);
                 if (selfs.changes) changing.insert(f->name);
             }
         }
-        for (auto& f : type.methods) {
+        for (auto& f : methods) {
             auto self = std::make_unique<Symbol>();
             self->name = "this";
-            self->type = {structBase(i), 0};
+            self->type = structType(i);
             self->origin = Symbol::Origin::FunctionParameter;
             self->output = changing.count(f->name) > 0;
             self->place = f->place;
             f->parameters.insert(f->parameters.begin(), self.get());
             f->symbols.push_back(std::move(self));
             f->name = type.name + "->" + f->name;
-            unit_.functions.push_back(std::move(f));
+            unit.functions.push_back(std::move(f));
         }
-        type.methods.clear();
-    }
-}
-
-/// x->f(a) for a structure x is f(x, a).
-void Lowering::methodCall(Expr& e) {
-    if (e.kind != ExprKind::Method) return;
-    const Type t = typeOf(*e.args[0]);
-    if (!isStruct(t)) return;
-    e.kind = ExprKind::ShadeopCall;
-    const std::string name = methodNamed(t, e.text, e.args.size() - 1);
-    if (t.array) {
-        sources_.report(e.place, msg::kStructIsArray(shown(t.element())), "its elements have methods: a[i]->" + e.text + "()");
-    } else if (!name.empty()) {
-        e.text = name;
-        return;
-    } else {
-        std::vector<std::string> names;
-        for (Type s = t;; s = {structBase(size_t(structOf(s).base)), 0}) {
-            for (const auto& [n, f] : functions_)
-                if (n.rfind(structOf(s).name + "->", 0) == 0) names.push_back(n.substr(structOf(s).name.size() + 2));
-            if (structOf(s).base < 0) break;
-        }
-        const std::string near = nearestName(e.text, names);
-        sources_.report(e.place, msg::kNoSuchMethod(shown(t), e.text), near.empty() ? "" : "did you mean '" + near + "'?");
-    }
-    e.text.clear(); // no more messages about this call
-}
-
-/// Replaces a filterregion in a call of a shadeop by the members that the shadeop takes.
-void Lowering::regions(Expr& call) {
-    if (call.kind != ExprKind::ShadeopCall || functions_.count(call.text)) return;
-    // "materialsamples", samples: left as they are, since these calls draw no samples of the material.
-    static const std::set<std::string_view> kSums = {"directlighting", "diffuselighting", "specularlighting", "indirectspecular"};
-    const int sample = structNamed("__radiancesample");
-    if (sample >= 0 && kSums.count(call.text))
-        for (size_t i = call.args.size(); i-- > 0;) {
-            const Type t = typeOf(*call.args[i]);
-            if (!isStruct(t) || t.base != structBase(size_t(sample))) continue;
-            const bool token = i > 1 && call.args[i - 1]->kind == ExprKind::String && !call.args[i - 1]->handle;
-            call.args.erase(call.args.begin() + long(i) - token, call.args.begin() + long(i) + 1);
-            i -= token;
-        }
-    if (structNamed("filterregion") < 0) return;
-    const Base region = structBase(size_t(structNamed("filterregion")));
-    std::vector<ExprPtr> given = std::move(call.args);
-    call.args.clear();
-    const auto part = [&](const Expr& of, const char* name) {
-        auto m = node(ExprKind::Member, of.place);
-        m->text = name;
-        adopt(*m, clone(of));
-        return m;
-    };
-    const Shadeop* const op = findShadeop(call.text);
-    const Footprint over = op ? op->footprint : Footprint{};
-    ExprPtr blur;
-    for (auto& a : given) {
-        if (const Type t = typeOf(*a); t.base != region || t.array || !isStruct(t)) {
-            adopt(call, std::move(a));
-            continue;
-        }
-        std::vector<const char*> parts = {"centre"};
-        if (over.of == Footprint::Of::Surface) parts = {"s1", "t1", "s2", "t2", "s3", "t3", "s4", "t4"};
-        if (over.corners) parts = {"v1", "v2", "v3", "v4"};
-        for (const char* p : parts) adopt(call, part(*a, p));
-        if (parts.size() > 1 && !blur) blur = part(*a, "blurred");
-    }
-    if (!blur) return;
-    auto token = node(ExprKind::String, call.place);
-    token->text = "blur";
-    adopt(call, std::move(token));
-    adopt(call, std::move(blur));
-}
-
-/// gather(category, P, region, samples): a direction and the angle about it.
-void Lowering::gatherRegion(Stmt& s) {
-    const int index = structNamed("filterregion");
-    for (size_t i = 0; index >= 0 && i < s.exprs.size(); ++i) {
-        const Type t = typeOf(*s.exprs[i]);
-        if (t.base != structBase(size_t(index)) || t.array) continue;
-        auto angle = node(ExprKind::Member, s.exprs[i]->place);
-        angle->text = "spread";
-        adopt(*angle, clone(*s.exprs[i]));
-        auto centre = node(ExprKind::Member, s.exprs[i]->place);
-        centre->text = "centre";
-        adopt(*centre, std::move(s.exprs[i]));
-        s.exprs[i] = std::move(centre);
-        s.exprs.insert(s.exprs.begin() + long(i) + 1, std::move(angle));
-        return;
+        methods.clear();
     }
 }
 

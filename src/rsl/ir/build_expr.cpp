@@ -336,6 +336,8 @@ Inst* Builder::expr(const Expr& e) {
     case ExprKind::Method:
         return methodCall(e);
     case ExprKind::Sequence:
+    case ExprKind::Part:
+    case ExprKind::Construct:
         break;
     }
     return constant(0);

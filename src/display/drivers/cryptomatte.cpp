@@ -55,7 +55,7 @@ private:
 const DriverDescriptor cryptomatteDriver{
     {"cryptomatte"},
     "OpenEXR whatever the extension: the channels of the mode, and ids and coverages of objects or materials by the Cryptomatte "
-    "specification 1.2, as floats (docs/mattes.md). \"string[] layer\" names what tells them apart: \"identifier:name\" (by "
+    "specification 1.2, as floats (docs/mattes.md). \"string layer\" names what tells them apart: \"identifier:name\" (by "
     "default) "
     "or another attribute, or \"material\"; \"int levels\" (6) how many share a pixel.",
     []() -> std::unique_ptr<Driver> { return std::make_unique<Cryptomatte>(); }};

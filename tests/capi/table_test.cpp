@@ -281,8 +281,9 @@ TEST(CBinding, TheHeaderIsThatOfTheTable) {
     EXPECT_EQ(header.substr(from, end - from), callPrototypes());
     for (const Request& r : requestTable()) {
         const std::string name = " Ri" + std::string(r.name);
-        EXPECT_EQ(header.find(name + "(") == header.npos, withoutCall(r.name)) << name;
-        if (r.parameters && !withoutCall(r.name)) EXPECT_EQ(header.find(name + "V(") == header.npos, hasOneForm(r.name)) << name;
+        if (withoutCall(r.name)) continue;
+        EXPECT_NE(header.find(name + "("), header.npos) << name;
+        if (r.parameters) EXPECT_EQ(header.find(name + "V(") == header.npos, hasOneForm(r.name)) << name;
     }
 }
 

@@ -232,66 +232,6 @@ RtVoid RiErrorIgnore(RtInt code, RtInt severity, char* message);
 RtVoid RiErrorPrint(RtInt code, RtInt severity, char* message);
 RtVoid RiErrorAbort(RtInt code, RtInt severity, char* message);
 
-/* Blocks, declarations, motion */
-RtToken RiDeclare(RI_CHARS* name, RI_CHARS* declaration);
-RtVoid RiFrameBegin(RtInt number);
-RtVoid RiFrameEnd(void);
-RtVoid RiWorldBegin(void);
-RtVoid RiWorldEnd(void);
-RtVoid RiAttributeBegin(void);
-RtVoid RiAttributeEnd(void);
-RtVoid RiTransformBegin(void);
-RtVoid RiTransformEnd(void);
-RtVoid RiSolidBegin(RtToken operation);
-RtVoid RiSolidEnd(void);
-RtObjectHandle RiObjectBegin(void);
-RtVoid RiObjectEnd(void);
-RtVoid RiObjectInstance(RtObjectHandle handle);
-RtVoid RiMotionBegin(RtInt n, ...);
-RtVoid RiMotionBeginV(RtInt n, RtFloat times[]);
-RtVoid RiMotionEnd(void);
-RtVoid RiResourceBegin(void);
-RtVoid RiResourceEnd(void);
-RtVoid RiResource(RtToken handle, RtToken type, ...);
-RtVoid RiResourceV(RtToken handle, RtToken type, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiIfBegin(RI_CHARS* expression, ...);
-RtVoid RiIfBeginV(RI_CHARS* expression, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiElseIf(RI_CHARS* expression, ...);
-RtVoid RiElseIfV(RI_CHARS* expression, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiElse(void);
-RtVoid RiIfEnd(void);
-
-/* Cameras and other options */
-RtVoid RiFormat(RtInt xres, RtInt yres, RtFloat pixelaspect);
-RtVoid RiFrameAspectRatio(RtFloat ratio);
-RtVoid RiScreenWindow(RtFloat left, RtFloat right, RtFloat bottom, RtFloat top);
-RtVoid RiCropWindow(RtFloat xmin, RtFloat xmax, RtFloat ymin, RtFloat ymax);
-RtVoid RiProjection(RI_CHARS* name, ...);
-RtVoid RiProjectionV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiClipping(RtFloat hither, RtFloat yon);
-RtVoid RiClippingPlane(RtFloat x, RtFloat y, RtFloat z, RtFloat nx, RtFloat ny, RtFloat nz);
-RtVoid RiDepthOfField(RtFloat fstop, RtFloat focallength, RtFloat focaldistance);
-RtVoid RiShutter(RtFloat open, RtFloat close);
-RtVoid RiPixelVariance(RtFloat variance);
-RtVoid RiPixelSamples(RtFloat x, RtFloat y);
-RtVoid RiPixelFilter(RtFilterFunc filter, RtFloat xwidth, RtFloat ywidth);
-RtVoid RiExposure(RtFloat gain, RtFloat gamma);
-RtVoid RiImager(RI_CHARS* name, ...);
-RtVoid RiImagerV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiQuantize(RtToken type, RtInt one, RtInt min, RtInt max, RtFloat dither);
-RtVoid RiDisplay(RI_CHARS* name, RtToken type, RtToken mode, ...);
-RtVoid RiDisplayV(RI_CHARS* name, RtToken type, RtToken mode, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiDisplayChannel(RI_CHARS* channel, ...);
-RtVoid RiDisplayChannelV(RI_CHARS* channel, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiHider(RtToken name, ...);
-RtVoid RiHiderV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiColorSamples(RtInt n, RtFloat nRGB[], RtFloat RGBn[]);
-RtVoid RiRelativeDetail(RtFloat factor);
-RtVoid RiOption(RI_CHARS* name, ...);
-RtVoid RiOptionV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiCamera(RI_CHARS* name, ...);
-RtVoid RiCameraV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-
 /* Pixel filters: x and y from the middle of the filter, its widths, all in pixels. */
 RtFloat RiBoxFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
 RtFloat RiTriangleFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
@@ -305,187 +245,252 @@ RtFloat RiMitchellFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
 RtFloat RiBlackmanHarrisFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
 RtFloat RiLanczosFilter(RtFloat x, RtFloat y, RtFloat xwidth, RtFloat ywidth);
 
+/* Points from one space to another: gives back points, or 0 when there is no such space: then they are as they were. */
+RtPoint* RiTransformPoints(RtToken fromspace, RtToken tospace, RtInt n, RtPoint points[]);
+
+/* RiProcedural: a function of the program's own is called at once, with the area of the bound in pixels (RI_INFINITY when it
+ * is not known), and free after it. The built-in ones take RtString arrays as data: { file }, { command, data }, { library, data
+ * }. RiProcFree is free(). */
+RtVoid RiProcDelayedReadArchive(RtPointer data, RtFloat detail);
+RtVoid RiProcRunProgram(RtPointer data, RtFloat detail);
+RtVoid RiProcDynamicLoad(RtPointer data, RtFloat detail);
+RtVoid RiProcFree(RtPointer data);
+/* The callback of RiReadArchive gets the comments of the archive, at their places: "comment" or "structure", and the text as a
+ * format without arguments. */
+/* Made from the table of requests by `alpenglow info --requests --header`: */
+/* Structure */
+RtVoid RiAttributeBegin(void);
+RtVoid RiAttributeEnd(void);
+RtVoid RiElse(void);
+RtVoid RiElseIf(RtToken expression, ...);
+RtVoid RiElseIfV(RtToken expression, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiFrameBegin(RtInt number);
+RtVoid RiFrameEnd(void);
+RtVoid RiIfBegin(RtToken expression, ...);
+RtVoid RiIfBeginV(RtToken expression, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiIfEnd(void);
+RtVoid RiMotionBegin(RtInt n, ...);
+RtVoid RiMotionBeginV(RtInt n, RtFloat times[]);
+RtVoid RiMotionEnd(void);
+RtObjectHandle RiObjectBegin(void);
+RtVoid RiObjectEnd(void);
+RtVoid RiResourceBegin(void);
+RtVoid RiResourceEnd(void);
+RtVoid RiSolidBegin(RtToken operation);
+RtVoid RiSolidEnd(void);
+RtVoid RiTransformBegin(void);
+RtVoid RiTransformEnd(void);
+RtVoid RiWorldBegin(void);
+RtVoid RiWorldEnd(void);
+
+/* Camera, display and other options */
+RtVoid RiCamera(RtToken name, ...);
+RtVoid RiCameraV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiClipping(RtFloat hither, RtFloat yon);
+RtVoid RiClippingPlane(RtFloat x, RtFloat y, RtFloat z, RtFloat nx, RtFloat ny, RtFloat nz);
+RtVoid RiColorSamples(RtInt n, RtFloat nRGB[], RtFloat RGBn[]);
+RtVoid RiCropWindow(RtFloat xmin, RtFloat xmax, RtFloat ymin, RtFloat ymax);
+RtVoid RiDepthOfField(RtFloat fstop, RtFloat focallength, RtFloat focaldistance);
+RtVoid RiDisplay(RtToken name, RtToken type, RtToken mode, ...);
+RtVoid RiDisplayV(RtToken name, RtToken type, RtToken mode, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisplayChannel(RtToken channel, ...);
+RtVoid RiDisplayChannelV(RtToken channel, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiExposure(RtFloat gain, RtFloat gamma);
+RtVoid RiFormat(RtInt xres, RtInt yres, RtFloat pixelaspect);
+RtVoid RiFrameAspectRatio(RtFloat ratio);
+RtVoid RiHider(RtToken name, ...);
+RtVoid RiHiderV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiImager(RtToken name, ...);
+RtVoid RiImagerV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiOption(RtToken name, ...);
+RtVoid RiOptionV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPixelFilter(RtFilterFunc filter, RtFloat xwidth, RtFloat ywidth);
+RtVoid RiPixelSamples(RtFloat x, RtFloat y);
+RtVoid RiPixelVariance(RtFloat variance);
+RtVoid RiProjection(RtToken name, ...);
+RtVoid RiProjectionV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiQuantize(RtToken type, RtInt one, RtInt min, RtInt max, RtFloat dither);
+RtVoid RiRelativeDetail(RtFloat factor);
+RtVoid RiScreenWindow(RtFloat left, RtFloat right, RtFloat bottom, RtFloat top);
+RtVoid RiShutter(RtFloat open, RtFloat close);
+
 /* Attributes */
-RtVoid RiColor(RtColor color);
-RtVoid RiOpacity(RtColor color);
-RtVoid RiTextureCoordinates(RtFloat s1, RtFloat t1, RtFloat s2, RtFloat t2, RtFloat s3, RtFloat t3, RtFloat s4, RtFloat t4);
-RtVoid RiShadingRate(RtFloat size);
-RtVoid RiShadingInterpolation(RtToken type);
-RtVoid RiMatte(RtBoolean on);
+RtVoid RiAttribute(RtToken name, ...);
+RtVoid RiAttributeV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiBasis(RtBasis ubasis, RtInt ustep, RtBasis vbasis, RtInt vstep);
 RtVoid RiBound(RtBound bound);
+RtVoid RiColor(RtColor color);
 RtVoid RiDetail(RtBound bound);
 RtVoid RiDetailRange(RtFloat minvisible, RtFloat lowertransition, RtFloat uppertransition, RtFloat maxvisible);
 RtVoid RiGeometricApproximation(RtToken type, RtFloat value);
 RtVoid RiGeometricRepresentation(RtToken type);
+RtVoid RiMatte(RtBoolean on);
+RtVoid RiOpacity(RtColor color);
 RtVoid RiOrientation(RtToken orientation);
+RtVoid RiResource(RtToken handle, RtToken type, ...);
+RtVoid RiResourceV(RtToken handle, RtToken type, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiReverseOrientation(void);
+RtVoid RiShadingInterpolation(RtToken type);
+RtVoid RiShadingRate(RtFloat size);
 RtVoid RiSides(RtInt sides);
-RtVoid RiBasis(RtBasis ubasis, RtInt ustep, RtBasis vbasis, RtInt vstep);
+RtVoid RiTextureCoordinates(RtFloat s1, RtFloat t1, RtFloat s2, RtFloat t2, RtFloat s3, RtFloat t3, RtFloat s4, RtFloat t4);
 RtVoid RiTrimCurve(RtInt nloops, RtInt ncurves[], RtInt order[], RtFloat knot[], RtFloat min[], RtFloat max[], RtInt n[],
                    RtFloat u[], RtFloat v[], RtFloat w[]);
-RtVoid RiAttribute(RI_CHARS* name, ...);
-RtVoid RiAttributeV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
 
-/* Shaders and lights */
-RtVoid RiSurface(RI_CHARS* name, ...);
-RtVoid RiSurfaceV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiDisplacement(RI_CHARS* name, ...);
-RtVoid RiDisplacementV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiAtmosphere(RI_CHARS* name, ...);
-RtVoid RiAtmosphereV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiInterior(RI_CHARS* name, ...);
-RtVoid RiInteriorV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiExterior(RI_CHARS* name, ...);
-RtVoid RiExteriorV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiShader(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiShaderV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtLightHandle RiLightSource(RI_CHARS* name, ...);
-RtLightHandle RiLightSourceV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtLightHandle RiAreaLightSource(RI_CHARS* name, ...);
-RtLightHandle RiAreaLightSourceV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+/* Shaders */
+RtVoid RiAtmosphere(RtToken name, ...);
+RtVoid RiAtmosphereV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiBxdf(RtToken name, RtToken handle, ...);
+RtVoid RiBxdfV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisplace(RtToken name, RtToken handle, ...);
+RtVoid RiDisplaceV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisplacement(RtToken name, ...);
+RtVoid RiDisplacementV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiExterior(RtToken name, ...);
+RtVoid RiExteriorV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiInterior(RtToken name, ...);
+RtVoid RiInteriorV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPattern(RtToken name, RtToken handle, ...);
+RtVoid RiPatternV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiShader(RtToken name, RtToken handle, ...);
+RtVoid RiShaderV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiSurface(RtToken name, ...);
+RtVoid RiSurfaceV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiVPAtmosphere(RtToken name, ...);
+RtVoid RiVPAtmosphereV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiVPInterior(RtToken name, ...);
+RtVoid RiVPInteriorV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiVPSurface(RtToken name, ...);
+RtVoid RiVPSurfaceV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+
+/* Lights */
+RtLightHandle RiAreaLightSource(RtToken name, ...);
+RtLightHandle RiAreaLightSourceV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiEnableLightFilter(RtToken light, RtToken filter, RtBoolean on);
 RtVoid RiIlluminate(RtLightHandle light, RtBoolean on);
+RtVoid RiLight(RtToken name, RtToken handle, ...);
+RtVoid RiLightV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiLightFilter(RtToken name, RtToken handle, ...);
+RtVoid RiLightFilterV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtLightHandle RiLightSource(RtToken name, ...);
+RtLightHandle RiLightSourceV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
 
-/* The requests of later renderers (PRMan) that name a plug-in and a handle */
-RtVoid RiBxdf(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiBxdfV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiPattern(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiPatternV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiDisplace(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiDisplaceV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiLight(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiLightV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiLightFilter(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiLightFilterV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiEnableLightFilter(RI_CHARS* light, RI_CHARS* filter, RtBoolean on);
-RtVoid RiIntegrator(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiIntegratorV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiDisplayFilter(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiDisplayFilterV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiSampleFilter(RI_CHARS* name, RI_CHARS* handle, ...);
-RtVoid RiSampleFilterV(RI_CHARS* name, RI_CHARS* handle, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiPixelSampleImager(RI_CHARS* name, ...);
-RtVoid RiPixelSampleImagerV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiVPAtmosphere(RI_CHARS* name, ...);
-RtVoid RiVPAtmosphereV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiVPInterior(RI_CHARS* name, ...);
-RtVoid RiVPInteriorV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiVPSurface(RI_CHARS* name, ...);
-RtVoid RiVPSurfaceV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-
-/* Transformations. RiTransformPoints gives back points, or 0 when there is no such space: then they are as they were. */
-RtVoid RiIdentity(void);
-RtVoid RiTransform(RtMatrix matrix);
+/* Transformations */
 RtVoid RiConcatTransform(RtMatrix matrix);
+RtVoid RiCoordSysTransform(RtToken name);
+RtVoid RiCoordinateSystem(RtToken name);
+RtVoid RiDeformation(RtToken name, ...);
+RtVoid RiDeformationV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiIdentity(void);
 RtVoid RiPerspective(RtFloat fov);
-RtVoid RiTranslate(RtFloat dx, RtFloat dy, RtFloat dz);
 RtVoid RiRotate(RtFloat angle, RtFloat dx, RtFloat dy, RtFloat dz);
 RtVoid RiScale(RtFloat sx, RtFloat sy, RtFloat sz);
+RtVoid RiScopedCoordinateSystem(RtToken name);
 RtVoid RiSkew(RtFloat angle, RtFloat dx1, RtFloat dy1, RtFloat dz1, RtFloat dx2, RtFloat dy2, RtFloat dz2);
-RtVoid RiDeformation(RI_CHARS* name, ...);
-RtVoid RiDeformationV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiCoordinateSystem(RtToken space);
-RtVoid RiScopedCoordinateSystem(RtToken space);
-RtVoid RiCoordSysTransform(RtToken space);
-RtPoint* RiTransformPoints(RtToken fromspace, RtToken tospace, RtInt n, RtPoint points[]);
+RtVoid RiTransform(RtMatrix matrix);
+RtVoid RiTranslate(RtFloat dx, RtFloat dy, RtFloat dz);
 
 /* Primitives */
-RtVoid RiPolygon(RtInt nvertices, ...);
-RtVoid RiPolygonV(RtInt nvertices, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiBlobby(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[], ...);
+RtVoid RiBlobbyV(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[],
+                 RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiCone(RtFloat height, RtFloat radius, RtFloat thetamax, ...);
+RtVoid RiConeV(RtFloat height, RtFloat radius, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiCurves(RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, ...);
+RtVoid RiCurvesV(RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiCylinder(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...);
+RtVoid RiCylinderV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiDisk(RtFloat height, RtFloat radius, RtFloat thetamax, ...);
+RtVoid RiDiskV(RtFloat height, RtFloat radius, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiGeneralPolygon(RtInt nloops, RtInt nverts[], ...);
 RtVoid RiGeneralPolygonV(RtInt nloops, RtInt nverts[], RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiPointsPolygons(RtInt npolys, RtInt nverts[], RtInt verts[], ...);
-RtVoid RiPointsPolygonsV(RtInt npolys, RtInt nverts[], RtInt verts[], RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiPointsGeneralPolygons(RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], ...);
-RtVoid RiPointsGeneralPolygonsV(RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], RtInt n, RtToken tokens[],
-                                RtPointer values[]);
-RtVoid RiPatch(RtToken type, ...);
-RtVoid RiPatchV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiPatchMesh(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, ...);
-RtVoid RiPatchMeshV(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, RtInt n, RtToken tokens[],
-                    RtPointer values[]);
-RtVoid RiNuPatch(RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder, RtFloat vknot[],
-                 RtFloat vmin, RtFloat vmax, ...);
-RtVoid RiNuPatchV(RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder, RtFloat vknot[],
-                  RtFloat vmin, RtFloat vmax, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiSubdivisionMesh(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
-                         RtInt intargs[], RtFloat floatargs[], ...);
-RtVoid RiSubdivisionMeshV(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
-                          RtInt intargs[], RtFloat floatargs[], RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiGeometry(RtToken name, ...);
+RtVoid RiGeometryV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiHierarchicalSubdivisionMesh(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[],
                                      RtInt nargs[], RtInt intargs[], RtFloat floatargs[], RtToken stringargs[], ...);
 RtVoid RiHierarchicalSubdivisionMeshV(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[],
                                       RtInt nargs[], RtInt intargs[], RtFloat floatargs[], RtToken stringargs[], RtInt n,
                                       RtToken tokens[], RtPointer values[]);
-RtVoid RiSphere(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...);
-RtVoid RiSphereV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiCone(RtFloat height, RtFloat radius, RtFloat thetamax, ...);
-RtVoid RiConeV(RtFloat height, RtFloat radius, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiCylinder(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...);
-RtVoid RiCylinderV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiHyperboloid(RtPoint point1, RtPoint point2, RtFloat thetamax, ...);
 RtVoid RiHyperboloidV(RtPoint point1, RtPoint point2, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiNuPatch(RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder, RtFloat vknot[],
+                 RtFloat vmin, RtFloat vmax, ...);
+RtVoid RiNuPatchV(RtInt nu, RtInt uorder, RtFloat uknot[], RtFloat umin, RtFloat umax, RtInt nv, RtInt vorder, RtFloat vknot[],
+                  RtFloat vmin, RtFloat vmax, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiParaboloid(RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...);
 RtVoid RiParaboloidV(RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiDisk(RtFloat height, RtFloat radius, RtFloat thetamax, ...);
-RtVoid RiDiskV(RtFloat height, RtFloat radius, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPatch(RtToken type, ...);
+RtVoid RiPatchV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPatchMesh(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, ...);
+RtVoid RiPatchMeshV(RtToken type, RtInt nu, RtToken uwrap, RtInt nv, RtToken vwrap, RtInt n, RtToken tokens[],
+                    RtPointer values[]);
+RtVoid RiPoints(RtInt npoints, ...);
+RtVoid RiPointsV(RtInt npoints, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPointsGeneralPolygons(RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], ...);
+RtVoid RiPointsGeneralPolygonsV(RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[], RtInt n, RtToken tokens[],
+                                RtPointer values[]);
+RtVoid RiPointsPolygons(RtInt npolys, RtInt nverts[], RtInt verts[], ...);
+RtVoid RiPointsPolygonsV(RtInt npolys, RtInt nverts[], RtInt verts[], RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiPolygon(RtInt nvertices, ...);
+RtVoid RiPolygonV(RtInt nvertices, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiProcedural(RtPointer data, RtBound bound, RtProcSubdivFunc subdivide, RtProcFreeFunc free);
+RtVoid RiSphere(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, ...);
+RtVoid RiSphereV(RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiSubdivisionMesh(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
+                         RtInt intargs[], RtFloat floatargs[], ...);
+RtVoid RiSubdivisionMeshV(RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[],
+                          RtInt intargs[], RtFloat floatargs[], RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiTorus(RtFloat majorradius, RtFloat minorradius, RtFloat phimin, RtFloat phimax, RtFloat thetamax, ...);
 RtVoid RiTorusV(RtFloat majorradius, RtFloat minorradius, RtFloat phimin, RtFloat phimax, RtFloat thetamax, RtInt n,
                 RtToken tokens[], RtPointer values[]);
-RtVoid RiPoints(RtInt npoints, ...);
-RtVoid RiPointsV(RtInt npoints, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiCurves(RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, ...);
-RtVoid RiCurvesV(RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiBlobby(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[], ...);
-RtVoid RiBlobbyV(RtInt nleaf, RtInt ncode, RtInt code[], RtInt nfloats, RtFloat floats[], RtInt nstrings, RtString strings[],
-                 RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiGeometry(RtToken type, ...);
-RtVoid RiGeometryV(RtToken type, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiVolume(RtToken type, RtBound bound, RtInt dimensions[], ...);
 RtVoid RiVolumeV(RtToken type, RtBound bound, RtInt dimensions[], RtInt n, RtToken tokens[], RtPointer values[]);
 
-/* Procedurals: a function of the program's own is called at once, with the area of the bound in pixels (RI_INFINITY when it
- * is not known), and free after it. The built-in ones take RtString arrays as data: { file }, { command, data }, { library, data
- * }. RiProcFree is free(). */
-RtVoid RiProcedural(RtPointer data, RtBound bound, RtProcSubdivFunc subdivide, RtProcFreeFunc free);
-RtVoid RiProcDelayedReadArchive(RtPointer data, RtFloat detail);
-RtVoid RiProcRunProgram(RtPointer data, RtFloat detail);
-RtVoid RiProcDynamicLoad(RtPointer data, RtFloat detail);
-RtVoid RiProcFree(RtPointer data);
-
-/* Archives. The callback of RiReadArchive gets the comments of the archive, at their places: "comment" or "structure", and
- * the text as a format without arguments. */
-RtVoid RiReadArchive(RI_CHARS* name, RtArchiveCallback callback, ...);
-RtVoid RiReadArchiveV(RI_CHARS* name, RtArchiveCallback callback, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiArchiveRecord(RtToken type, RI_CHARS* format, ...);
-RtArchiveHandle RiArchiveBegin(RI_CHARS* name, ...);
-RtArchiveHandle RiArchiveBeginV(RI_CHARS* name, RtInt n, RtToken tokens[], RtPointer values[]);
+/* Archives */
+RtArchiveHandle RiArchiveBegin(RtToken name, ...);
+RtArchiveHandle RiArchiveBeginV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiArchiveEnd(void);
-RtVoid RiSystem(RI_CHARS* command);
+RtVoid RiArchiveRecord(RtToken type, RtToken format, ...);
+RtVoid RiReadArchive(RtToken name, RtArchiveCallback callback, ...);
+RtVoid RiReadArchiveV(RtToken name, RtArchiveCallback callback, RtInt n, RtToken tokens[], RtPointer values[]);
 
-/* Maps of pictures */
-RtVoid RiMakeTexture(RI_CHARS* picture, RI_CHARS* texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
-                     RtFloat twidth, ...);
-RtVoid RiMakeTextureV(RI_CHARS* picture, RI_CHARS* texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
-                      RtFloat twidth, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiMakeBump(RI_CHARS* picture, RI_CHARS* texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
+/* Maps */
+RtVoid RiMakeBrickMap(RtInt nclouds, RtString clouds[], RtToken brickmap, ...);
+RtVoid RiMakeBrickMapV(RtInt nclouds, RtString clouds[], RtToken brickmap, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeBump(RtToken picture, RtToken texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
                   RtFloat twidth, ...);
-RtVoid RiMakeBumpV(RI_CHARS* picture, RI_CHARS* texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
+RtVoid RiMakeBumpV(RtToken picture, RtToken texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
                    RtFloat twidth, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiMakeLatLongEnvironment(RI_CHARS* picture, RI_CHARS* texture, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, ...);
-RtVoid RiMakeLatLongEnvironmentV(RI_CHARS* picture, RI_CHARS* texture, RtFilterFunc filter, RtFloat swidth, RtFloat twidth,
-                                 RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiMakeCubeFaceEnvironment(RI_CHARS* px, RI_CHARS* nx, RI_CHARS* py, RI_CHARS* ny, RI_CHARS* pz, RI_CHARS* nz,
-                                 RI_CHARS* texture, RtFloat fov, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, ...);
-RtVoid RiMakeCubeFaceEnvironmentV(RI_CHARS* px, RI_CHARS* nx, RI_CHARS* py, RI_CHARS* ny, RI_CHARS* pz, RI_CHARS* nz,
-                                  RI_CHARS* texture, RtFloat fov, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, RtInt n,
-                                  RtToken tokens[], RtPointer values[]);
-RtVoid RiMakeShadow(RI_CHARS* picture, RI_CHARS* shadow, ...);
-RtVoid RiMakeShadowV(RI_CHARS* picture, RI_CHARS* shadow, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiMakeBrickMap(RtInt nclouds, RtString clouds[], RI_CHARS* brickmap, ...);
-RtVoid RiMakeBrickMapV(RtInt nclouds, RtString clouds[], RI_CHARS* brickmap, RtInt n, RtToken tokens[], RtPointer values[]);
-RtVoid RiMakeOcclusion(RtInt npictures, RtString pictures[], RI_CHARS* shadow, ...);
-RtVoid RiMakeOcclusionV(RtInt npictures, RtString pictures[], RI_CHARS* shadow, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeCubeFaceEnvironment(RtToken px, RtToken nx, RtToken py, RtToken ny, RtToken pz, RtToken nz, RtToken texture,
+                                 RtFloat fov, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, ...);
+RtVoid RiMakeCubeFaceEnvironmentV(RtToken px, RtToken nx, RtToken py, RtToken ny, RtToken pz, RtToken nz, RtToken texture,
+                                  RtFloat fov, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, RtInt n, RtToken tokens[],
+                                  RtPointer values[]);
+RtVoid RiMakeLatLongEnvironment(RtToken picture, RtToken texture, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, ...);
+RtVoid RiMakeLatLongEnvironmentV(RtToken picture, RtToken texture, RtFilterFunc filter, RtFloat swidth, RtFloat twidth, RtInt n,
+                                 RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeOcclusion(RtInt npictures, RtString pictures[], RtToken shadow, ...);
+RtVoid RiMakeOcclusionV(RtInt npictures, RtString pictures[], RtToken shadow, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeShadow(RtToken picture, RtToken shadow, ...);
+RtVoid RiMakeShadowV(RtToken picture, RtToken shadow, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiMakeTexture(RtToken picture, RtToken texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
+                     RtFloat twidth, ...);
+RtVoid RiMakeTextureV(RtToken picture, RtToken texture, RtToken swrap, RtToken twrap, RtFilterFunc filter, RtFloat swidth,
+                      RtFloat twidth, RtInt n, RtToken tokens[], RtPointer values[]);
 
+/* Other */
+RtToken RiDeclare(RtToken name, RtToken declaration);
+RtVoid RiDisplayFilter(RtToken name, RtToken handle, ...);
+RtVoid RiDisplayFilterV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiIntegrator(RtToken name, RtToken handle, ...);
+RtVoid RiIntegratorV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiObjectInstance(RtObjectHandle handle);
+RtVoid RiPixelSampleImager(RtToken name, ...);
+RtVoid RiPixelSampleImagerV(RtToken name, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiSampleFilter(RtToken name, RtToken handle, ...);
+RtVoid RiSampleFilterV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
+RtVoid RiSystem(RtToken command);
+/* So far made. */
 #undef RI_CHARS
 
 #ifdef __cplusplus

@@ -1,13 +1,14 @@
 /* PxrLMPlastic: a diffuse body below a clear, rough surface and a coat, of RIS. Names are those of Pixar's documentation. What the
    layers reflect is taken from those below.
      clearcoatThickness, clearcoatTransmission  what is left of light after one unit of thickness, straight down and back
+     lmlayer  a layer on top (PxrLMLayer)
    Ball: Surface "ris/PxrLMPlastic" "color diffuseColor" [.1 .4 .1] */
-#include "rislobes.h"
+#include "lmlayer.h"
 surface PxrLMPlastic(varying color diffuseColor = .5; varying float diffuseRoughness = 0; varying color sheen = 0, translucence = 0;
                      varying color specularColor = 1; varying float specularEta = 1.5, specularRoughness = .3, specularAnisotropy = 0;
                      varying color clearcoatColor = 0; varying float clearcoatRoughness = .05, clearcoatEta = 1.5, clearcoatThickness = 0;
                      varying color clearcoatTransmission = 1, emission = 0;
-                     varying normal diffuseNn = 0, specularNn = 0, clearcoatNn = 0; varying float presence = 1, inputAOV = 0;)
+                     varying normal diffuseNn = 0, specularNn = 0, clearcoatNn = 0; varying float presence = 1, inputAOV = 0; LM_IN(lmlayer))
 {
     normal n, nShine, nCoat;
     risSide(normal 0, diffuseNn, n);
@@ -25,6 +26,8 @@ surface PxrLMPlastic(varying color diffuseColor = .5; varying float diffuseRough
         color left = clearcoatThickness > 0 ? layerPower(clamp(clearcoatTransmission, color 1e-4, color 1), 2 * clearcoatThickness) : color 1;
         light = coat + (1 - shines) * left * light;
     }
+    light += emission;
+    LM_COVER(light, n, V)
     Oi = presence;
-    Ci = presence * (light + emission);
+    Ci = presence * light;
 }

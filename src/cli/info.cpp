@@ -9,6 +9,7 @@
 #include "cli/optionmanual.h"
 #include "cli/shaderdescription.h"
 #include "cli/shaderlist.h"
+#include "ri/requests/header.h"
 #include "rsl/compiler.h"
 #include "shadeops/descriptor.h"
 #include <CLI/CLI.hpp>
@@ -52,6 +53,7 @@ struct InfoArguments {
     std::string file, shadeop, dialect;
     std::string names[6]; ///< of the topics, by their number
     std::vector<std::string> searchPaths;
+    bool header = false; ///< of C
     bool shaders = false, json = false, markdown = false, allowExec = false;
 };
 
@@ -60,6 +62,10 @@ std::string dumped(const OrderedJson& j) { return j.dump(2, ' ', false, OrderedJ
 /// Options, attributes, hiders, displays, requests, messages.
 int topic(Topic t, const InfoArguments& a) {
     const std::string& name = a.names[size_t(t)];
+    if (a.header && t == Topic::Requests) {
+        std::fputs(ri::callPrototypes().c_str(), stdout);
+        return kDone;
+    }
     if (a.markdown && name.empty()) {
         std::fputs(topicPage(t).c_str(), stdout);
         return kDone;
@@ -153,6 +159,7 @@ void addInfo(CLI::App& app, int* status) {
         "--markdown", a->markdown,
         "Print the whole page: docs/shadeops.md with --shadeops, docs/rib.md with --requests, docs/messages.md with --messages, "
         "docs/options.md with the others");
+    c->add_flag("--header", a->header, "With --requests: print the prototypes of their calls in C, as ri.h has them");
     c->add_option("--searchpath", a->searchPaths, "Folders for shaders and #include, separated by :")
         ->type_name("DIRS")
         ->allow_extra_args(false);

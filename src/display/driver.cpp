@@ -20,7 +20,8 @@ const std::vector<const DriverDescriptor*>& drivers() {
     static const std::vector<const DriverDescriptor*> list = [] {
         std::vector<const DriverDescriptor*> all;
         for (const DriverDescriptor& d : ofFormats) all.push_back(&d);
-        all.insert(all.end(), {&fileDriver, &framebufferDriver, &nullDriver, &zfileDriver, &deepDriver, &otherDriver});
+        all.insert(all.end(),
+                   {&fileDriver, &framebufferDriver, &nullDriver, &zfileDriver, &deepDriver, &cryptomatteDriver, &otherDriver});
         return all;
     }();
     return list;

@@ -2,6 +2,7 @@
 // names, manual text and factory; drivers() lists them.
 #pragma once
 #include "display/imageio.h"
+#include "display/matte.h"
 #include "display/quantize.h"
 #include <functional>
 #include <memory>
@@ -23,6 +24,7 @@ struct DriverSetup {
     std::map<std::string, std::string> metadata;
     std::optional<Matrix> worldToCamera, worldToNDC;
     std::shared_ptr<const DeepSamples> deep; ///< for a deep shadow map (deepDriver); null: there is none, or no map
+    MattesRef mattes;                        ///< for a "cryptomatte" (cryptomatteDriver); null: there are none
     OutputPolicy policy;
     SourcePlace place; ///< of the Display request
 };

@@ -104,8 +104,9 @@ private:
     struct Waiting {
         size_t going;
         float z;
+        const scene::Attributes* surface;
     };
-    bool takes(Going&, const Color& opacity, float z);
+    bool takes(Going&, const Color& opacity, float z, const scene::Attributes* surface);
     void intersect();
     void pass(Going&, const accel::Hit&);
     DepthRays& stage_;
@@ -131,9 +132,9 @@ void DepthRays::Looking::add(const PathRay& path) {
     s.kind = path.kind;
 }
 
-bool DepthRays::Looking::takes(Going& g, const Color& opacity, float z) {
+bool DepthRays::Looking::takes(Going& g, const Color& opacity, float z, const scene::Attributes* surface) {
     g.left *= Color(1) - opacity;
-    if (opacity != Color(0)) out_[g.index].left.push_back({z, g.left});
+    if (opacity != Color(0)) out_[g.index].left.push_back({z, g.left, surface});
     return maxComponent(g.left) > 0;
 }
 
@@ -164,10 +165,11 @@ void DepthRays::Looking::pass(Going& g, const accel::Hit& h) {
         if (overruled) return next_.push_back(g);
     }
     const Opacity& opacity = b.opacityFor(shading::HitMode::Default);
+    const scene::Attributes* own = &world_.shapes_[h.shape]->attributes(); // bindings are shared by shapes of other names
     if (opacity.kernel) {
         met_.push_back({binding, h, &asked_[g.index], &opacity.kernel});
-        waiting_.push_back({next_.size(), P.z});
-    } else if (!takes(g, opacity.constant, P.z)) {
+        waiting_.push_back({next_.size(), P.z, own});
+    } else if (!takes(g, opacity.constant, P.z, own)) {
         return;
     }
     next_.push_back(g);
@@ -181,8 +183,10 @@ bool DepthRays::Looking::run() {
         for (size_t i = 0; i < now_.size(); ++i)
             if (hits_[i].valid() && maxComponent(now_[i].left) > 0) pass(now_[i], hits_[i]);
         if (!met_.empty())
-            stage_.opacities_.takeOpacities(
-                met_, [&](size_t k, const Color& opacity) { takes(next_[waiting_[k].going], opacity, waiting_[k].z); });
+            stage_.opacities_.takeOpacities(met_, [&](size_t k, const Color& opacity) {
+                const Waiting& w = waiting_[k];
+                takes(next_[w.going], opacity, w.z, w.surface);
+            });
         std::erase_if(next_, [](const Going& g) { return !(maxComponent(g.left) > 0); });
         now_.swap(next_);
         if (stop && *stop) return false;

@@ -10,6 +10,10 @@ namespace alpenglow::shading {
 struct GridPoint; // shading/gridpoint.h
 }
 
+namespace alpenglow::scene {
+struct Attributes; // scene/primitive.h
+}
+
 namespace alpenglow::integrator {
 
 /// Segments of rays in a medium that scatters.
@@ -63,6 +67,7 @@ struct CameraRay {
 struct DepthStep {
     float z;
     Color left;
+    const scene::Attributes* surface = nullptr; ///< of the surface that the light meets there; null: a medium. Lives as the world
 };
 
 struct SampleResult {

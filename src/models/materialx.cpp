@@ -1,8 +1,8 @@
 #include "models/materialx.h"
 #include "base/file.h"
+#include "base/xml.h"
 #include "models/mtlxgraph.h"
 #include "models/standardtext.h"
-#include "models/xml.h"
 #include <cctype>
 #include <fmt/format.h>
 
@@ -119,7 +119,7 @@ std::string materialxShader(const MaterialxOptions& o, const MaterialxMaps& maps
     const auto root = parseXml({reinterpret_cast<const char*>(bytes->data()), bytes->size()}, o.file, d);
     if (!root) return "";
     const auto fail = [&](const std::string& why, const std::string& hint = "") {
-        d.report(Severity::Error, Rie::BadFile, {o.file, root->line, 0}, why, hint);
+        d.report(Severity::Error, Rie::BadFile, {o.file, root->line, root->column}, why, hint);
         return std::string();
     };
     if (root->name != "materialx")

@@ -50,7 +50,7 @@ MtlxValue mtlxFit(MtlxValue v, size_t width) {
 
 void MtlxGraph::warn(const XmlElement& at, const std::string& text) {
     if (said_.insert(text).second && said_.size() < 50)
-        diags_.report(Severity::Warning, Rie::Incapable, {file_, at.line, 0}, text);
+        diags_.report(Severity::Warning, Rie::Incapable, {file_, at.line, at.column}, text);
 }
 
 const XmlElement* MtlxGraph::inputOf(const XmlElement& node, const std::string& name) {

@@ -1,8 +1,8 @@
 // Graphs of MaterialX as statements of RSL. Every value is a list of one to four numbers, each an expression of type float; what
 // a node makes of them stands in variables.
 #pragma once
+#include "base/xml.h"
 #include "models/materialx.h"
-#include "models/xml.h"
 #include <map>
 #include <set>
 

@@ -62,6 +62,11 @@ public:
     void add(const scene::ShaderCall& s) {
         add(s.name);
         add(s.params);
+        bits(s.connections.size());
+        for (const scene::Connection& c : s.connections) {
+            for (const std::string* t : {&c.parameter, &c.handle, &c.output}) add(*t);
+            bits(uint64_t(c.element + 1));
+        }
         add(s.toWorld);
     }
     void add(const scene::Attributes& a) {

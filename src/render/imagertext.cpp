@@ -90,7 +90,14 @@ template <class V> void fromJson(const Json& j, std::map<std::string, V>& m) {
 
 Json toJson(const ShaderRef& s) {
     if (!s) return nullptr;
-    return {{"name", s->name}, {"params", toJson(s->params)}, {"toWorld", toJson(s->toWorld)}, {"place", toJson(s->place)}};
+    Json connections = Json::array();
+    for (const scene::Connection& c : s->connections)
+        connections.push_back({c.parameter, c.element, c.handle, c.output, toJson(c.place)});
+    return {{"name", s->name},
+            {"params", toJson(s->params)},
+            {"connections", connections},
+            {"toWorld", toJson(s->toWorld)},
+            {"place", toJson(s->place)}};
 }
 void fromJson(const Json& j, ShaderRef& s) {
     s.reset();
@@ -98,6 +105,14 @@ void fromJson(const Json& j, ShaderRef& s) {
     auto call = std::make_shared<scene::ShaderCall>();
     call->name = j.at("name").get<std::string>();
     fromJson(j.at("params"), call->params);
+    for (const Json& c : j.at("connections")) {
+        scene::Connection& to = call->connections.emplace_back();
+        to.parameter = c.at(0).get<std::string>();
+        to.element = c.at(1).get<int>();
+        to.handle = c.at(2).get<std::string>();
+        to.output = c.at(3).get<std::string>();
+        fromJson(c.at(4), to.place);
+    }
     fromJson(j.at("toWorld"), call->toWorld);
     fromJson(j.at("place"), call->place);
     s = std::move(call);

@@ -132,6 +132,7 @@ std::string pictureOptions(const RenderSettings& s) {
 static bool isBeside(const scene::Display& d, const scene::Options& o, const RenderSettings& s) {
     if (s.output.empty() || &d == &o.displays.front()) return false;
     const display::DriverDescriptor* driver = display::findDriver(d.type);
+    if (driver == &display::cryptomatteDriver) return true;
     return (!driver || driver->writes) && d.mode != "rgb" && d.mode != "rgba" && d.mode != "a";
 }
 
@@ -144,6 +145,7 @@ std::vector<NamedDisplay> displaysOf(const scene::Options& o, const RenderSettin
         all.back().display.name = isNumbered(o) ? numberedName(d.name, o.frameNumber) : withFrame(d.name, o.frameNumber);
     }
     if (pictures && all.empty()) all.push_back({});
+    for (const auto& [handle, d] : o.mattes) all.push_back({d, false});
     for (NamedDisplay& n : all) {
         if (n.user) continue;
         std::string& name = n.display.name;

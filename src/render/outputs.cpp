@@ -130,6 +130,10 @@ bool OutputPlan::anyDeep() const {
     return std::any_of(pictures.begin(), pictures.end(), [](const OutputSpec& p) { return p.deep; });
 }
 
+bool OutputPlan::anyMattes() const {
+    return std::any_of(pictures.begin(), pictures.end(), [](const OutputSpec& p) { return p.asksMattes.has_value(); });
+}
+
 bool OutputPlan::onlyDeep() const {
     return std::all_of(pictures.begin(), pictures.end(), [](const OutputSpec& p) { return p.deep; });
 }
@@ -239,6 +243,7 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
         if (deep) display.mode = "z"; // "deepopacity" and the like: it holds what it holds
         OutputSpec s = specOf(display, o, b, plan, diags);
         s.deep = deep;
+        if (display::findDriver(s.type) == &display::cryptomatteDriver) s.asksMattes = mattesAsked(s.params, s.place, diags);
         if (settings.gamma && s.ownExposure && !isMap(d.display)) s.gamma = *settings.gamma;
         s.map = isMap(d.display);
         s.userFile = d.user;
@@ -421,6 +426,7 @@ bool writeOutputs(const OutputPlan& plan, const PictureFacts& facts, const std::
         setup.policy.allowWrite = allowWrite || s.userFile;
         setup.place = s.place;
         if (s.deep) setup.deep = facts.deep;
+        setup.mattes = s.mattes;
         const std::optional<display::Image> out = finishedPicture(plan, s, facts, pixels(s), imager);
         if (!out) return all;
         all &= display::writeDisplay(setup, *out, diags);

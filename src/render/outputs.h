@@ -3,9 +3,11 @@
 #pragma once
 #include "base/file.h"
 #include "display/imageio.h"
+#include "display/matte.h"
 #include "display/quantize.h"
 #include "integrator/integrator.h"
 #include "render/film.h"
+#include "render/matteasked.h"
 #include "render/samplebuffer.h"
 #include "render/settings.h"
 #include "scene/display.h"
@@ -52,9 +54,11 @@ struct OutputSpec {
     DepthFilter depth = DepthFilter::Min;
     display::Quantization rgba, z;
     bool quantizeAsked = false;
-    bool userFile = false; ///< by -o or --display: may be in any folder
-    bool map = false;      ///< isMap()
-    bool deep = false;     ///< a deep shadow map; PictureFacts::deep has its pixels
+    bool userFile = false;                 ///< by -o or --display: may be in any folder
+    bool map = false;                      ///< isMap()
+    std::optional<MattesAsked> asksMattes; ///< a "cryptomatte"
+    display::MattesRef mattes;             ///< of it, once they are made. Not in part files
+    bool deep = false;                     ///< a deep shadow map; PictureFacts::deep has its pixels
     bool has(OutputVariable::Source) const;
     std::vector<std::string> channels() const;
 };
@@ -85,6 +89,7 @@ struct OutputPlan {
     bool needs(OutputVariable::Source) const;
     /// Whether some picture, or every picture, is a deep shadow map.
     bool anyDeep() const, onlyDeep() const;
+    bool anyMattes() const;
     bool needsDepth(DepthFilter) const;
     /// Sets the widths from the engine and names the channels of undeclared outputs. `missing`: outputs that no shader has.
     void resolve(std::vector<int> widths, Diagnostics&, const std::vector<std::string>& missing = {});

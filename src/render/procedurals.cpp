@@ -18,7 +18,7 @@ void Renderer::makeAll(FrameWork& f) {
 
 bool Renderer::buildFrame(FrameWork& f) {
     // Maps and shadows need all geometry.
-    if (f.plan.anyDeep() || CausticPasses::asked(f.o)) makeAll(f);
+    if (f.plan.anyDeep() || f.plan.anyMattes() || CausticPasses::asked(f.o)) makeAll(f);
     const auto build = [&] { return engine_.build(drawnLevels(f.made, f.camera), f.settings, diagnostics_); };
     f.settings = engineSettings(f);
     f.world = build();

@@ -103,6 +103,7 @@ private:
     bool renderSamples(FrameWork&, struct Job&);
     void writeFrameFilm(FrameWork&, Film&, double renderSec);
     bool makeDepths(FrameWork&, struct Job&);
+    bool makeMattes(FrameWork&, struct Job&);
     bool renderGrid(FrameWork&, struct Job&);
     /// Hider "photon": writes the photon maps that the frame names. Defined in renderphotons.cpp.
     void renderPhotons(FrameWork&, int threads);

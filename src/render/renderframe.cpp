@@ -122,7 +122,7 @@ void Renderer::drawPictures(FrameWork& f, int team) {
     if (settings_.pixel) {
         printPixel(job, f.o, f.wanted, f.path);
         ++outcome_.rendered;
-    } else if (f.plan.anyDeep() && !makeDepths(f, job)) {
+    } else if ((f.plan.anyDeep() && !makeDepths(f, job)) || (f.plan.anyMattes() && !makeMattes(f, job))) {
         if (!abandons(f)) ++outcome_.refused;
         return;
     } else if (!f.path || f.plan.onlyDeep()) {

@@ -1,5 +1,6 @@
-// The binary tokens of RIB (RISpec 3.2, appendix C.2). Integers and fixed point numbers are signed.
+// The binary tokens of RIB (RISpec 3.2, appendix C.2).
 #include "base/limits.h"
+#include "ri/binarynumber.h"
 #include "ri/lexer.h"
 #include "ri/requests/request.h"
 #include <algorithm>
@@ -12,8 +13,6 @@ namespace alpenglow::ri {
 namespace {
 
 constexpr size_t kBuffered = 64u << 10; // bytes of an array that are allocated before they are read
-
-inline uint32_t fromBig(uint32_t v) { return std::endian::native == std::endian::little ? __builtin_bswap32(v) : v; }
 
 uint64_t bigEndian(const std::string& s) {
     uint64_t v = 0;
@@ -75,50 +74,12 @@ bool Lexer::binaryFloats(Token& t, uint64_t n) {
             continue;
         }
         t.floats.resize(old + have);
-        const char* from = buffer_.data() + pos_;
-        double* to = t.floats.data() + old;
-        for (size_t i = 0; i < have; ++i) {
-            uint32_t bits;
-            std::memcpy(&bits, from + 4 * i, 4);
-            to[i] = double(std::bit_cast<float>(fromBig(bits)));
-        }
+        floatsAt(buffer_.data() + pos_, have, t.floats.data() + old);
         pos_ += 4 * have;
         n -= have;
     }
     return true;
 }
-
-namespace {
-
-/// The number whose code is at p, which has kNumberBytes behind it. Null: another code; else where it ends.
-inline const char* numberAt(const char* p, double& out) {
-    const auto c = static_cast<unsigned char>(*p++);
-    if (c >= 0200 && c <= 0217) {
-        const unsigned w = c & 3, d = (c >> 2) & 3;
-        uint32_t bits;
-        std::memcpy(&bits, p, 4);
-        const int32_t v = int32_t(fromBig(bits)) >> (8 * (3 - w));
-        out = d == 0 ? double(v) : std::ldexp(double(v), -8 * int(d));
-        return p + w + 1;
-    }
-    if (c == 0244) {
-        uint32_t bits;
-        std::memcpy(&bits, p, 4);
-        out = double(std::bit_cast<float>(fromBig(bits)));
-        return p + 4;
-    }
-    if (c == 0245) {
-        uint64_t bits;
-        std::memcpy(&bits, p, 8);
-        out = std::bit_cast<double>(std::endian::native == std::endian::little ? __builtin_bswap64(bits) : bits);
-        return p + 8;
-    }
-    return nullptr;
-}
-
-constexpr size_t kNumberBytes = 9;
-
-} // namespace
 
 void Lexer::binaryNumbers(std::vector<double>& out) {
     double v;

@@ -44,14 +44,14 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
     const Value& v = raw.value;
     std::string_view request = call.request->name;
     *keep = false;
-    Resolved r = declarations.resolve(raw.token, category);
+    const Resolved& r = declarations.resolve(raw.token, category);
     p.name = r.name;
     if (r.malformed) {
         reporter.error(Rie::Syntax, p.place, fmt::format("{}: \"{}\" is not a declaration", request, raw.token.substr(0, 80)),
                        "class type[n] name, for example \"varying color Cs\"");
         return p;
     }
-    if (r.inlineForm && r.name != "double" && saysDouble(raw.token)) sayDouble(p.place);
+    if (r.inlineForm && r.name != "double" && r.saysDouble) sayDouble(p.place);
     bool effect = true; // a bad value of what does nothing is no failure
     if (use == Use::Option || use == Use::Attribute) effect = sayUnknown(use == Use::Option, category, p);
     if (use == Use::Hider || use == Use::Display) effect = sayUnknownParameter(use == Use::Hider, p);
@@ -85,8 +85,7 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
         if (p.type == scene::Type::Color && !nRGB.empty()) {
             p.numbers = toRgb(v.numbers);
         } else {
-            p.numbers.resize(v.numbers.size());
-            for (size_t i = 0; i < v.numbers.size(); ++i) p.numbers[i] = toFloat(v.numbers[i]);
+            p.numbers = toFloats(v.numbers);
         }
         // x - x is 0 for finite x and NaN otherwise, in every order of summing.
         float sum = 0;

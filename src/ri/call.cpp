@@ -1,4 +1,5 @@
 #include "ri/call.h"
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,18 +13,25 @@ float toFloat(double d) {
 
 float Call::real(size_t i, size_t k) const { return toFloat(arguments[i].numbers[k]); }
 
-std::vector<float> Call::reals(size_t i) const {
-    std::vector<float> r;
-    r.reserve(arguments[i].numbers.size());
-    for (double d : arguments[i].numbers) r.push_back(toFloat(d));
-    return r;
+std::vector<float> toFloats(const std::vector<double>& from) {
+    constexpr double kMax = std::numeric_limits<float>::max();
+    std::vector<float> to(from.size());
+    bool large = false; // or infinite
+    for (size_t i = 0; i < from.size(); ++i) {
+        large |= std::fabs(from[i]) > kMax;
+        to[i] = float(std::min(std::max(from[i], -kMax), kMax));
+    }
+    for (size_t i = 0; large && i < from.size(); ++i) to[i] = toFloat(from[i]);
+    return to;
 }
 
+std::vector<float> Call::reals(size_t i) const { return toFloats(arguments[i].numbers); }
+
 std::vector<int> Call::ints(size_t i) const {
-    std::vector<int> r;
-    r.reserve(arguments[i].numbers.size());
-    for (double d : arguments[i].numbers) r.push_back(int(d));
-    return r;
+    const std::vector<double>& from = arguments[i].numbers;
+    std::vector<int> to(from.size());
+    for (size_t k = 0; k < from.size(); ++k) to[k] = int(from[k]);
+    return to;
 }
 
 } // namespace alpenglow::ri

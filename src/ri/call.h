@@ -54,5 +54,6 @@ struct Call {
 
 /// d as float; beyond the range of float the nearest finite one. NaN and infinity stay.
 float toFloat(double d);
+std::vector<float> toFloats(const std::vector<double>& d); ///< each of them
 
 } // namespace alpenglow::ri

@@ -177,13 +177,22 @@ bool saysDouble(std::string_view text) {
     return std::find(all.begin(), all.end(), "double") != all.end();
 }
 
-Resolved Declarations::resolve(std::string_view token, std::string_view category) const {
+const Resolved& Declarations::resolve(std::string_view token, std::string_view category) const {
+    constexpr size_t kMost = 1024; // of a hostile file
+    if (!category.empty()) return last_ = found(token, category);
+    if (const auto i = seen_.find(token); i != seen_.end()) return i->second;
+    if (seen_.size() >= kMost) seen_.clear();
+    return seen_.emplace(token, found(token, category)).first->second;
+}
+
+Resolved Declarations::found(std::string_view token, std::string_view category) const {
     static const Table standard = makeTable(kStandard);
     static const KnownTypes implementation = implementationTypes();
     Resolved r;
     std::vector<std::string_view> w = words(token);
     if (w.size() > 1) {
         r.inlineForm = true;
+        r.saysDouble = std::find(w.begin(), w.end(), "double") != w.end();
         // The name is last; a length behind it ("float x[2]") is read as the type's.
         size_t nameAt = w.size() - 1;
         if (w[nameAt].front() == '[' && nameAt > 0) --nameAt;

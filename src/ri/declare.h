@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <unordered_map>
 
 namespace alpenglow::ri {
 
@@ -27,19 +28,31 @@ struct Resolved {
     std::optional<Declaration> declaration; ///< empty: not declared
     bool malformed = false;                 ///< an inline declaration that does not parse
     bool inlineForm = false;
-    bool byValue = false; ///< known, with the type of its value
+    bool byValue = false;    ///< known, with the type of its value
+    bool saysDouble = false; ///< an inline declaration whose type is "double" (saysDouble())
 };
 
 /// The declared names of a stream. Not thread safe.
 class Declarations {
 public:
     /// Declares a name, or replaces its declaration.
-    void declare(const std::string& name, const Declaration& d) { user_[name] = d; }
-    /// `category`: class of an Option or Attribute ("searchpath"), or "" elsewhere; its known names are looked up first.
-    Resolved resolve(std::string_view token, std::string_view category) const;
+    void declare(const std::string& name, const Declaration& d) {
+        user_[name] = d;
+        seen_.clear();
+    }
+    /// `category`: class of an Option or Attribute ("searchpath"), or "" elsewhere; its known names are looked up first. The
+    /// result holds until the next call of a member.
+    const Resolved& resolve(std::string_view token, std::string_view category) const;
 
 private:
+    struct Hash : std::hash<std::string_view> {
+        using is_transparent = void;
+    };
+    Resolved found(std::string_view token, std::string_view category) const;
     std::map<std::string, Declaration, std::less<>> user_;
+    /// Tokens without a category, as found before: a scene has few, and each of them in every primitive.
+    mutable std::unordered_map<std::string, Resolved, Hash, std::equal_to<>> seen_;
+    mutable Resolved last_; ///< with a category
 };
 
 /// The words of RIB: "facevarying", "hpoint".

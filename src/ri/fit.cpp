@@ -20,12 +20,17 @@ bool isArgument(const Primitive& p, const Param& v) {
 
 /// The last of a name counts (docs/design/ri.md, "Reading").
 void dropDuplicates(Primitive& p, Reporter& reporter) {
-    if (p.params.size() < 2) return;
+    const auto later = [&](size_t i) {
+        for (size_t k = i + 1; k < p.params.size(); ++k)
+            if (p.params[k].name == p.params[i].name) return true;
+        return false;
+    };
+    bool any = false; // nearly never, so that nothing is moved
+    for (size_t i = 0; i + 1 < p.params.size() && !any; ++i) any = later(i);
+    if (!any) return;
     scene::ParamList kept;
     for (size_t i = 0; i < p.params.size(); ++i) {
-        bool later = false;
-        for (size_t k = i + 1; k < p.params.size() && !later; ++k) later = p.params[k].name == p.params[i].name;
-        if (later)
+        if (later(i))
             reporter.once(fmt::format("ri:twice:{}", p.params[i].name), Severity::Warning, Rie::Consistency, p.params[i].place,
                           fmt::format("{}: \"{}\" is given twice: the last one counts", p.kind, p.params[i].name));
         else kept.push_back(std::move(p.params[i]));
@@ -156,15 +161,16 @@ bool fitVariables(Primitive& p, Reporter& reporter) {
         }
         points->numbers.resize(size_t(counts.vertex) * per);
     }
-    scene::ParamList kept;
-    kept.reserve(p.params.size());
-    for (Param& v : p.params) {
+    size_t kept = 0;
+    for (size_t i = 0; i < p.params.size(); ++i) {
+        Param& v = p.params[i];
         bool fixed = v.name == "P" || v.name == "Pw" || v.name == "Pz";
         if (isArgument(p, v)) v.cls = Class::Constant;
         else if (!(points && fixed) && !fitOne(v, p, counts, given, reporter)) continue;
-        kept.push_back(std::move(v));
+        if (kept != i) p.params[kept] = std::move(v);
+        ++kept;
     }
-    p.params = std::move(kept);
+    p.params.resize(kept);
     return true;
 }
 

@@ -293,10 +293,11 @@ private:
     std::shared_ptr<scene::ShaderCall> networkCall(const Call&); ///< a node of a network of patterns
     /// A node of OSL with its patterns, as one shader.
     void oslPatterns(const Call&, const scene::ShaderCall& given, const scene::Param& named);
-    void overrideAttributes(scene::Frame&) const; ///< at WorldEnd: lights that are on everywhere, the surface of the integrator
-    void addFilters(Call& call) const;            ///< light filters as parameters of the light
-    void addProfile(Call& call);                  ///< an IES profile as a parameter of the light
-    void turnOn(int light);                       ///< on for all primitives of the world, unless it is muted
+    void sayFilterSubsets(const scene::Frame&);
+    void overrideAttributes(scene::Frame&); ///< at WorldEnd: lights that are on everywhere, the surface of the integrator
+    void addFilters(Call& call) const;      ///< light filters as parameters of the light
+    void addProfile(Call& call);            ///< an IES profile as a parameter of the light
+    void turnOn(int light);                 ///< on for all primitives of the world, unless it is muted
     std::vector<std::pair<int, std::set<std::string>>> groupsOfLights(const scene::Frame& frame) const;
     void addHeadlight(scene::Frame&);
     void risOptions(scene::Options&) const; ///< defaults of a scene with requests of RIS
@@ -410,6 +411,7 @@ private:
     scene::ShaderRef integratorSurface_;                  ///< of all surfaces of this world
     bool headlight_ = true;                               ///< no integrator, or PxrDefault: what has no light is lit from the eye
     bool ris_ = false;                                    ///< the scene has requests of RIS
+    bool filtered_ = false;                               ///< the scene has a LightFilter
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;

@@ -1,5 +1,6 @@
 // RIB bytes to tokens: ASCII and binary, freely mixed (RISpec 3.2, appendix C.2).
 #pragma once
+#include "ri/direct.h"
 #include "ri/reporter.h"
 #include "ri/source.h"
 #include <array>
@@ -45,6 +46,23 @@ public:
     /// The text of `line` when it is the current or the marked one and still buffered, at most 200 bytes of it.
     std::string lineText(const SourcePlace&) const;
     const std::string& file() const { return file_; }
+
+    // For what reads ahead in the buffer (direct.h):
+    Ahead ahead() const {
+        const char* p = buffer_.data() + pos_;
+        return {p, buffer_.data() + end_, p, line_, int(column())};
+    }
+    void advance(const Ahead& a) { ///< to a later place of what ahead() gave
+        pos_ = size_t(a.p - buffer_.data());
+        line_ = a.line;
+        lineStart_ = base_ + pos_ + 1 - size_t(a.column());
+    }
+    /// The string that binary files have given a code; null: none.
+    const std::string* stringOfCode(unsigned code) const {
+        return code < stringCodes_.size() && stringCodes_[code] ? &*stringCodes_[code] : nullptr;
+    }
+    /// Whether a code stands for a request of the table.
+    bool definesRequest(unsigned char code) const { return requests_[code] != nullptr; }
 
 private:
     size_t column() const { return base_ + pos_ - lineStart_ + 1; }

@@ -1,6 +1,7 @@
 #include "ri/oslnetwork.h"
 #include "base/file.h"
 #include "base/limits.h"
+#include "base/xml.h"
 #include "ri/interpreter.h"
 #include "ri/ris.h"
 #include <algorithm>
@@ -11,47 +12,32 @@ namespace {
 
 constexpr char kLayerMark = '\x1e'; // between the handle of a network and a layer: in no text of a file
 
-std::string_view trimmed(std::string_view s) {
-    const size_t first = s.find_first_not_of(" \t\r\n"), last = s.find_last_not_of(" \t\r\n");
-    return first == s.npos ? std::string_view() : s.substr(first, last - first + 1);
-}
-
-/// The tags of a text, one after the other, each with the text behind it.
-class Tags {
-public:
-    explicit Tags(std::string_view xml) : rest_(xml) {}
-    /// The next opening or closing ("/Node") tag; false at the end.
-    bool next() {
-        for (;;) {
-            const size_t open = rest_.find('<');
-            if (open == rest_.npos) return false;
-            rest_.remove_prefix(open);
-            if (rest_.starts_with("<!--")) {
-                const size_t end = rest_.find("-->");
-                if (end == rest_.npos) return false;
-                rest_.remove_prefix(end + 3);
-                continue;
-            }
-            const size_t close = rest_.find('>');
-            if (close == rest_.npos) return false;
-            const std::string_view inside = rest_.substr(1, close - 1);
-            rest_.remove_prefix(close + 1);
-            if (inside.starts_with('?') || inside.starts_with('!')) continue;
-            name = inside.substr(0, inside.find_first_of(" \t\r\n", 1));
-            text = trimmed(rest_.substr(0, rest_.find('<')));
-            return true;
-        }
-    }
-    std::string_view name, text;
-
-private:
-    std::string_view rest_;
-};
+constexpr size_t kXmlDepth = 64;
 
 /// A side of a connection as the file has it.
 struct End {
+    const XmlElement* element = nullptr;
     std::string node, layer, parameter;
 };
+
+const std::string& textOf(const XmlElement& e, std::string_view child) {
+    static const std::string none;
+    const XmlElement* c = e.child(child);
+    return c ? c->text : none;
+}
+
+End endOf(const XmlElement& connection, std::string_view side) {
+    const XmlElement* e = connection.child(side);
+    if (!e) return {&connection, "", "", ""};
+    return {e, textOf(*e, "NodeId"), textOf(*e, "NodeLayer"), textOf(*e, "ParameterName")};
+}
+
+/// Elements of that name anywhere below `in`, in their order. No deeper than the reader of XML lets them be.
+void below(const XmlElement& in, std::string_view name, std::vector<const XmlElement*>& out) {
+    for (const XmlElement& e : in.children)
+        if (e.name == name) out.push_back(&e);
+        else below(e, name, out);
+}
 
 /// The layer that is meant; empty: none.
 std::string layerOf(const OslNetwork& n, const End& e) {
@@ -67,44 +53,33 @@ bool namedAsNetwork(const std::string& path) { return path.ends_with(".xml"); }
 
 } // namespace
 
-std::optional<OslNetwork> oslNetwork(std::string_view xml, std::string& why) {
-    OslNetwork n;
-    Tags tags(xml);
-    OslNode node;
-    End ends[2], *side = nullptr;
-    bool ours = false;
-    std::vector<std::pair<End, End>> connections;
-    const auto wrong = [&](std::string what) -> std::optional<OslNetwork> {
-        why = std::move(what);
+std::optional<OslNetwork> oslNetwork(std::string_view xml, const std::string& file, Diagnostics& said) {
+    const auto root = parseXml(xml, file, said, {.anyEndTag = true, .depth = kXmlDepth});
+    if (!root) return {};
+    const auto wrong = [&](const XmlElement& at, std::string what) -> std::optional<OslNetwork> {
+        said.report(Severity::Error, Rie::BadFile, {file, at.line, at.column}, std::move(what));
         return {};
     };
-    while (tags.next()) {
-        if (tags.name == "RenderManOSLNetwork") ours = true;
-        else if (tags.name == "Node") node = {};
-        else if (tags.name == "Source") side = &ends[0];
-        else if (tags.name == "Destination") side = &ends[1];
-        else if (tags.name == "NodeId") (side ? side->node : node.shader) = tags.text;
-        else if (tags.name == "NodeLayer") (side ? side->layer : node.layer) = tags.text;
-        else if (tags.name == "ParameterName" && side) side->parameter = tags.text;
-        else if (tags.name == "/Node") {
-            if (node.shader.empty()) return wrong("it has a Node without a NodeId");
-            if (node.layer.empty()) node.layer = node.shader;
-            n.nodes.push_back(node);
-        } else if (tags.name == "/Connection") {
-            connections.emplace_back(ends[0], ends[1]);
-            ends[0] = ends[1] = {};
-            side = nullptr;
-        }
-        if (n.nodes.size() > kNetworkPatterns || connections.size() > kNetworkPatterns)
-            return wrong(fmt::format("it has more than {} nodes or connections", kNetworkPatterns));
+    std::vector<const XmlElement*> nodes, connections;
+    below(*root, "Node", nodes);
+    below(*root, "Connection", connections);
+    if (root->name != "RenderManOSLNetwork" || nodes.empty()) return wrong(*root, "it is no <RenderManOSLNetwork> with nodes");
+    if (nodes.size() > kNetworkPatterns || connections.size() > kNetworkPatterns)
+        return wrong(*root, fmt::format("it has more than {} nodes or connections", kNetworkPatterns));
+    OslNetwork n;
+    for (const XmlElement* e : nodes) {
+        OslNode node{textOf(*e, "NodeId"), textOf(*e, "NodeLayer")};
+        if (node.shader.empty()) return wrong(*e, "it has a Node without a NodeId");
+        if (node.layer.empty()) node.layer = node.shader;
+        n.nodes.push_back(std::move(node));
     }
-    if (!ours || n.nodes.empty()) return wrong("it is no <RenderManOSLNetwork> with nodes");
-    for (const auto& [from, to] : connections) {
+    for (const XmlElement* e : connections) {
+        const End from = endOf(*e, "Source"), to = endOf(*e, "Destination");
         OslLink link{layerOf(n, from), from.parameter, layerOf(n, to), to.parameter};
         if (link.from.empty() || link.to.empty()) {
             const End& lost = link.from.empty() ? from : to;
-            return wrong(
-                fmt::format("it connects \"{}\", which is none of its nodes", lost.layer.empty() ? lost.node : lost.layer));
+            return wrong(*lost.element, fmt::format("it connects \"{}\", which is none of its nodes",
+                                                    lost.layer.empty() ? lost.node : lost.layer));
         }
         n.links.push_back(std::move(link));
     }
@@ -130,26 +105,28 @@ void Interpreter::oslPatterns(const Call& call, const scene::ShaderCall& given, 
     const auto bytes = readWholeFile(path, limits::kShaderFileLooked, said);
     for (const Diagnostic& d : said.all()) reporter.error(d.code, named.place, d.message, d.hint);
     if (!bytes) return;
-    std::string why;
-    const auto network = oslNetwork(std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()), why);
-    if (!network) return reporter.error(Rie::BadFile, named.place, fmt::format("OSL network \"{}\" is not read: {}", name, why));
+    Diagnostics faults;
+    const auto network = oslNetwork(std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()), path, faults);
+    for (const Diagnostic& d : faults.all())
+        reporter.error(Rie::BadFile, d.place, fmt::format("OSL network \"{}\" is not read: {}", name, d.message),
+                       fmt::format("it is named at {}:{}:{}", named.place.file, named.place.line, named.place.column));
+    if (!network) return;
     const std::string& handle = call.text(1);
     for (const OslNode& node : network->nodes) {
         auto layer = std::make_shared<scene::ShaderCall>(given);
         layer->name = node.shader;
         layer->params.clear();
+        layer->connections.clear();
         const auto own = [&](const std::string& parameter) {
             return parameter.starts_with(node.layer + ".") ? parameter.substr(node.layer.size() + 1) : std::string();
         };
         for (const OslLink& l : network->links)
             if (l.to == node.layer)
-                layer->params.push_back(
-                    scene::connectionParam({l.parameter, -1, layerHandle(handle, l.from), l.output, named.place}));
+                layer->connections.push_back({l.parameter, -1, layerHandle(handle, l.from), l.output, named.place});
+        for (scene::Connection c : given.connections)
+            if (!(c.parameter = own(c.parameter)).empty()) layer->connections.push_back(std::move(c));
         for (scene::Param p : given.params)
-            if (auto c = scene::connectionOf(p)) {
-                c->parameter = own(c->parameter);
-                if (!c->parameter.empty()) layer->params.push_back(scene::connectionParam(*c));
-            } else if (!(p.name = own(p.name)).empty()) layer->params.push_back(std::move(p));
+            if (!(p.name = own(p.name)).empty()) layer->params.push_back(std::move(p));
         attributes().coshaders[layerHandle(handle, node.layer)] = layer;
         attributes().coshaders[handle] = layer;
     }

@@ -1,6 +1,7 @@
 // Networks of OSL shaders in one Pattern "PxrOSL" "string network": an XML file has their nodes and connections
 // ("Working with PxrOSL", renderman.pixar.com/resources/RenderMan_20/PxrOSLRef.html).
 #pragma once
+#include "base/diagnostics.h"
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,9 +23,9 @@ struct OslNetwork {
 };
 
 /// Reads a network. A node without <NodeLayer> has its <NodeId> as its name; connections name layers, or shaders where they name
-/// no layer that is there. Names of closing tags are not compared: files in use have wrong ones. Nothing: `why` says what is
-/// wrong.
-std::optional<OslNetwork> oslNetwork(std::string_view xml, std::string& why);
+/// no layer that is there. Names of closing tags are not compared: files in use have wrong ones. Nothing: an error with its place
+/// in `file`, the name for messages, was reported.
+std::optional<OslNetwork> oslNetwork(std::string_view xml, const std::string& file, Diagnostics&);
 
 /// Handle of the pattern that a layer of the Pattern "handle" is, with a byte that no handle of a scene has.
 std::string layerHandle(std::string_view handle, std::string_view layer);

@@ -136,7 +136,6 @@ void Parser::collect(std::vector<Value>& out) {
 
 bool Parser::next(Call& call) {
     for (;;) {
-        takeBack(call);
         if (!pending_) lexer_.next(token_);
         passComments();
         pending_ = false;
@@ -151,6 +150,7 @@ bool Parser::next(Call& call) {
         if (token_.kind != Token::Kind::Identifier) {
             reporter_.error(Rie::Syntax, call.place, "a request is expected here");
             pending_ = true;
+            takeBack(call);
             collect(values_);
             continue;
         }
@@ -162,15 +162,18 @@ bool Parser::next(Call& call) {
                 reporter_.error(Rie::BadToken, call.place, "unknown request '" + shown + "'",
                                 near.empty() ? "" : "did you mean " + near + "?");
             const std::string name = std::move(token_.text);
+            takeBack(call);
             collect(values_);
             if (unknown) unknown(name, values_);
             continue;
         }
         // Without arguments it is done at once: a pipe's WorldEnd renders before the next request is written.
         if (call.request->args.empty() && !call.request->parameters) {
-            call.arguments.clear();
+            direct_.resize(call, 0, 0);
             return true;
         }
+        if (direct_.read(lexer_, call)) return true;
+        takeBack(call);
         collect(values_);
         if (matchArguments(values_, call, reporter_)) return true;
     }

@@ -40,6 +40,7 @@ private:
     void keep(Value&& v);
     void takeBack(Call& call);
 
+    DirectReader direct_;
     std::vector<Value> values_;     ///< of the request that is read
     std::vector<Value> spare_;      ///< of those before
     bool pending_ = false;          ///< token_ was read ahead

@@ -29,15 +29,12 @@ public:
     scene::ShaderRef keep(const scene::ShaderCall& call, const std::string& handle) {
         way_.push_back(handle);
         auto copy = std::make_shared<scene::ShaderCall>(call);
-        copy->params.clear();
-        for (const scene::Param& p : call.params) {
-            auto c = scene::connectionOf(p);
-            if (c) intoLayer(*c);
-            if (!c) copy->params.push_back(p);
-            else if (follow(*c, call)) {
-                c->handle = scene::keptHandle(keeper_, c->handle);
-                copy->params.push_back(scene::connectionParam(*c));
-            }
+        copy->connections.clear();
+        for (scene::Connection c : call.connections) {
+            intoLayer(c);
+            if (!follow(c, call)) continue;
+            c.handle = scene::keptHandle(keeper_, c.handle);
+            copy->connections.push_back(std::move(c));
         }
         way_.pop_back();
         return copy;
@@ -108,7 +105,7 @@ std::shared_ptr<scene::ShaderCall> Interpreter::networkCall(const Call& call) {
     ris_ = true;
     Call plain = call;
     plain.params.clear();
-    scene::ParamList connections;
+    std::vector<scene::Connection> connections;
     for (const RawParam& raw : call.params) {
         const std::string name = connectedName(raw.token);
         if (name.empty()) {
@@ -123,11 +120,10 @@ std::shared_ptr<scene::ShaderCall> Interpreter::networkCall(const Call& call) {
             continue;
         }
         for (size_t i = 0; i < to.size(); ++i)
-            if (!to[i].empty())
-                connections.push_back(scene::connectionParam(connection(name, to.size() > 1 ? int(i) : -1, to[i], call.at(raw))));
+            if (!to[i].empty()) connections.push_back(connection(name, to.size() > 1 ? int(i) : -1, to[i], call.at(raw)));
     }
     auto s = std::make_shared<scene::ShaderCall>(*shader(plain));
-    s->params.insert(s->params.end(), connections.begin(), connections.end());
+    s->connections = std::move(connections);
     return s;
 }
 
@@ -157,6 +153,7 @@ scene::ShaderRef Interpreter::network(const Call& call, scene::Keeper keeper) {
     std::erase_if(a.coshaders, [&](const auto& c) { return c.first.starts_with(mark); });
     if (keeper != scene::Keeper::Light && !call.text(1).empty()) a.coshaders[call.text(1)] = root;
     Network n(*this, keeper, a.coshaders);
+    root->handle = call.text(1);
     scene::ShaderRef kept = n.keep(*root, call.text(1));
     a.coshaders.insert(n.kept.begin(), n.kept.end());
     return kept;

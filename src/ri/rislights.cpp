@@ -79,6 +79,7 @@ std::optional<std::string_view> lightGeometry(std::string_view name) {
 
 void Interpreter::lightFilter(const Call& call) {
     ris_ = true;
+    filtered_ = true;
     const scene::ParamList given = bind(call, Use::Other);
     const std::string& name = call.text(0);
     if (name == "PxrCombinerLightFilter") return; // each filter has its own way to be combined
@@ -208,8 +209,21 @@ void Interpreter::risLight(const Call& call) {
     end(BlockKind::Attribute, call);
 }
 
+/// A subset of the filters of its lights cannot be had by one primitive alone.
+void Interpreter::sayFilterSubsets(const scene::Frame& frame) {
+    if (!filtered_) return;
+    for (const scene::PrimitiveRef& p : frame.primitives) {
+        const scene::Param* subset = p->attributes ? p->attributes->value("lightfilter:subset") : nullptr;
+        if (!subset || wordsOf(subset).empty()) continue;
+        return reporter.once("ri:lightfilter:subset", Severity::Warning, Rie::Incapable, subset->place,
+                             "lightfilter:subset is not obeyed: every filter of a light holds for all that it illuminates",
+                             "a light of its own, with these filters, and lighting:subset do the same");
+    }
+}
+
 /// Lights of RIS are on for all that there is, whatever stood before them; an integrator may see one surface everywhere.
-void Interpreter::overrideAttributes(scene::Frame& frame) const {
+void Interpreter::overrideAttributes(scene::Frame& frame) {
+    sayFilterSubsets(frame);
     if (globalLights_.empty() && !integratorSurface_) return;
     std::map<scene::AttributesRef, scene::AttributesRef> lit;
     const std::vector<std::pair<int, std::set<std::string>>> groups = groupsOfLights(frame);

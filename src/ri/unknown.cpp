@@ -65,6 +65,15 @@ bool Interpreter::sayUnknown(bool option, const std::string& category, const sce
     return false;
 }
 
+/// What says elsewhere what is taken for a parameter of Hider; "": nothing known.
+static std::string saidElsewhere(const std::string& name) {
+    for (const char* samples : {"samples", "spp", "pixelsamples", "samplesperpixel"})
+        if (name == samples) return "PixelSamples x y gives each pixel x times y samples, and so does --spp";
+    for (const char* depth : {"maxdepth", "depth", "bounces", "maxpathlength"})
+        if (name == depth) return "Option \"trace\" \"int maxdepth\" says how long paths are, and so does --max-depth";
+    return "";
+}
+
 bool Interpreter::sayUnknownParameter(bool hider, const scene::Param& p) {
     const auto table = hider ? known::knownHiderParameters() : known::knownDisplayParameters();
     const known::OptionDescription* entry = known::findKnown(table, p.name);
@@ -77,8 +86,9 @@ bool Interpreter::sayUnknownParameter(bool hider, const scene::Param& p) {
     std::vector<std::string> names;
     for (const known::OptionDescription& d : table)
         if (d.settable()) names.emplace_back(d.name);
+    const std::string elsewhere = hider ? saidElsewhere(p.name) : "";
     reporter.once("ri:" + head, Severity::Warning, Rie::BadToken, p.place, head + " is not known: it does nothing",
-                  didYouMean(p.name, names));
+                  elsewhere.empty() ? didYouMean(p.name, names) : elsewhere);
     return false;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "base/limits.h"
 #include "base/stopflag.h"
+#include "rsl/front/connections.h"
 #include "rsl/ir/ir.h"
 #include <cstdint>
 #include <functional>
@@ -95,6 +96,7 @@ struct CoShader {
     std::string digest;                ///< of the shader's text
     std::map<std::string, std::vector<float>> numbers;
     std::map<std::string, std::string> strings;
+    Connections connections;
     std::vector<std::string> computed; ///< KernelOptions::computedParameters of this one
     std::string space;                 ///< what the renderer calls its "shader" space; empty: that of the shader that calls
     bool light = false;                ///< a light of the scene: the renderer determines its light and outputs
@@ -125,6 +127,7 @@ struct KernelOptions {
     /// Values of string parameters, and of numeric ones known to be 0 or 1 for good: specialised into the code. Elements of
     /// arrays of strings are "name[0]", "name[1]" ...; "name[]" is the length of an array that the shader leaves open.
     std::vector<std::pair<std::string, std::string>> stringParameters;
+    Connections connections;                    ///< parameters that take outputs of `coShaders`: part of the code
     std::vector<std::string> varyingParameters; ///< parameters overridden by varying primitive variables
     /// Parameters whose default the kernel computes for each sample (CompiledShader::computedParameters).
     std::vector<std::string> computedParameters;

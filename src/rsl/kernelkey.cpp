@@ -19,11 +19,20 @@ const std::string& descriptorDigest() {
     return digest;
 }
 
+std::string connectionKey(const Connections& connections) {
+    std::string k;
+    for (const auto& [to, from] : connections)
+        k += '\13' + to.parameter + '\14' + std::to_string(to.element) + '\15' + from.handle + '\16' + from.output +
+             (from.member ? "m" : "");
+    return k;
+}
+
 std::string coShaderKey(const KernelOptions& o) {
     std::string k;
     for (const CoShader& c : o.coShaders) {
         k += '\1' + c.handle + '\2' + c.digest + '\10' + c.space + (c.light ? "l" : "");
         for (const auto& name : c.computed) k += '\7' + name;
+        k += connectionKey(c.connections);
         for (const auto& [name, value] : c.strings) k += '\3' + name + '\4' + value;
         for (const auto& [name, value] : c.numbers) {
             k += '\5' + name + '\6';

@@ -8,6 +8,8 @@ namespace alpenglow::rsl {
 /// Everything in the descriptors of shadeops that affects code.
 const std::string& descriptorDigest();
 
+/// Connections, in their order.
+std::string connectionKey(const Connections&);
 /// The co-shaders and the values of their parameters, which are part of the code.
 std::string coShaderKey(const KernelOptions&);
 

@@ -1,29 +1,12 @@
 // Networks of patterns (PRMan 21 and later, RIS): which parameters of a shader call take outputs of which patterns. A call keeps
-// its connections among its parameters, and the patterns that they mean among the co-shaders of the attributes, so that copies of
-// either have them as well.
+// its connections (ShaderCall::connections), and the attributes the patterns that they mean among their co-shaders, so that
+// copies of either have them as well.
 #pragma once
 #include "scene/primitive.h"
-#include <optional>
 #include <string>
 #include <string_view>
-#include <vector>
 
 namespace alpenglow::scene {
-
-/// "reference color diffuseColor" ["tex:resultRGB"]: the parameter takes an output of the pattern of that handle.
-struct Connection {
-    std::string parameter;
-    int element = -1; ///< of an array; -1: the parameter is none
-    std::string handle, output;
-    SourcePlace place;
-};
-
-/// The connection as a parameter of its call. No request can give one of that name.
-Param connectionParam(const Connection&);
-/// What connectionParam() made; nothing for any other parameter.
-std::optional<Connection> connectionOf(const Param&);
-/// All connections of a call, in the order of its parameters.
-std::vector<Connection> connectionsOf(const ShaderCall&);
 
 /// Requests that keep the patterns that their connections named when they were read; later patterns of the same handles do not
 /// affect them.

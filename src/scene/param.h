@@ -41,12 +41,23 @@ template <class T> struct Moving {
 };
 using Transform = Moving<Matrix>;
 
+/// "reference color diffuseColor" ["tex:resultRGB"]: the parameter takes an output of the pattern of that handle
+/// (scene/network.h).
+struct Connection {
+    std::string parameter;
+    int element = -1; ///< of an array; -1: the parameter is none
+    std::string handle, output;
+    SourcePlace place;
+};
+
 /// A shader call: Surface "plastic" "Kd" .5
 struct ShaderCall {
     std::string name;
     ParamList params;
     Transform toWorld; ///< "shader" space to world: the CTM at the call
     SourcePlace place;
+    std::string handle = {};                  ///< of the Bxdf; "": of another request
+    std::vector<Connection> connections = {}; ///< of RIS; in their order
 };
 using ShaderRef = std::shared_ptr<const ShaderCall>;
 

@@ -161,6 +161,17 @@ std::optional<Filter> filterByName(std::string_view n) {
     return {};
 }
 
+/// Whether a shadow map has no surface in any of its texels: only depths that stand for none (1e30 of a zfile, RI_INFINITY).
+static bool holdsNoDepth(const Texture& map) {
+    constexpr float kNothing = 1e30f;
+    if (map.deep) return map.deep->steps.empty();
+    const Level& l = map.levels[0];
+    if (!l.codes.empty() || l.channels < 1) return false;
+    for (size_t i = 0; i < l.values.size(); i += size_t(l.channels))
+        if (l.values[i] < kNothing) return false;
+    return true;
+}
+
 std::shared_ptr<const Texture> makeTextureFrom(display::Image image, const TextureSettings& settings) {
     auto tex = std::make_shared<Texture>();
     auto text = [&](const char* key) { return textOf(image, key); };
@@ -247,6 +258,10 @@ std::shared_ptr<const Texture> TextureSystem::load(const std::string& path, cons
             auto tex = std::const_pointer_cast<Texture>(makeTextureFrom(std::move(*image), settings_));
             tex->path = path;
             settle(*tex, place);
+            if (tex->kind == Kind::Shadow && holdsNoDepth(*tex))
+                diags_.report(Severity::Warning, Rie::MissingData, place,
+                              "shadow map \"" + path + "\" is empty: nothing in it casts a shadow",
+                              "did the camera of its frame see anything?");
             entry->texture = tex;
         } catch (const std::bad_alloc&) {
             diags_.report(Severity::Error, Rie::NoMem, place, "texture \"" + path + "\": out of memory");

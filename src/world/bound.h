@@ -11,6 +11,7 @@ struct ShaderInstance {
     std::string name;
     std::shared_ptr<const rsl::CompiledShader> program;
     shading::ParameterBlock parameters;
+    rsl::Connections connections;                       ///< parameters that take outputs of co-shaders
     std::set<std::string> given;                        ///< parameters set by the scene
     std::map<std::string, SourcePlace> handlePlaces;    ///< where the scene set parameters of type `shader`
     std::vector<rsl::SentParameter> sent;               ///< KernelOptions::sentParameters

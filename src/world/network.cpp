@@ -1,6 +1,5 @@
 // Networks of patterns as kernels know them: which co-shaders the connections of a shader reach.
 #include "scene/network.h"
-#include "rsl/front/connections.h"
 #include "rsl/front/seexpr.h"
 #include "world/impl.h"
 #include "world/patterns.h"
@@ -8,16 +7,13 @@
 
 namespace alpenglow::world {
 
-bool takesOutputs(const ShaderInstance& i) {
-    return std::any_of(i.parameters.strings.begin(), i.parameters.strings.end(),
-                       [](const auto& s) { return rsl::Connected::isKey(s.first); });
-}
+bool takesOutputs(const ShaderInstance& i) { return !i.connections.empty(); }
 
 void connect(ShaderInstance& i, const scene::Connection& c, Diagnostics& d) {
     bool found = false;
     std::vector<std::string> names;
     const auto put = [&](const std::string& parameter, int element, const rsl::Connected& to) {
-        i.parameters.strings[rsl::Connected::key(parameter, element)] = to.text();
+        i.connections[{parameter, element}] = to;
         found = true;
     };
     for (const auto& p : i.program->parameters()) {
@@ -52,11 +48,10 @@ static InstanceRef expression(WorldImpl& world, const scene::ShaderCall& call, D
     };
     std::erase_if(rest.params, [&](const scene::Param& p) {
         if (p.name == "expression" && !p.strings.empty()) text = p.strings[0];
-        return p.type == scene::Type::String && !scene::connectionOf(p);
+        return p.type == scene::Type::String;
     });
-    for (const scene::Param& p : rest.params)
-        if (const auto c = scene::connectionOf(p)) add(c->parameter, true);
-        else add(p.name, p.numbers.size() == 3);
+    for (const scene::Param& p : rest.params) add(p.name, p.numbers.size() == 3);
+    for (const scene::Connection& c : rest.connections) add(c.parameter, true);
     const auto rsl = rsl::front::rslFromSeExpr(text, variables, call.place, d);
     Diagnostics said;
     auto program = rsl ? world.compiler_->loadText(*rsl, "SeExpr", said) : nullptr;
@@ -98,9 +93,8 @@ void addPatterns(WorldImpl& world, const ShaderInstance& shader, const std::map<
     std::map<std::string, scene::ShaderRef> reached;
     std::vector<InstanceRef> rest;
     const auto follow = [&](const ShaderInstance& i) {
-        for (const auto& [key, text] : i.parameters.strings) {
-            const auto c = rsl::Connected::isKey(key) ? rsl::Connected::parse(text) : std::nullopt;
-            const auto call = c ? coshaders.find(c->handle) : coshaders.end();
+        for (const auto& [of, c] : i.connections) {
+            const auto call = coshaders.find(c.handle);
             if (call == coshaders.end() || !reached.emplace(*call).second) continue;
             auto [known, fresh] = world.coShaders_.try_emplace(call->second.get());
             if (fresh) known->second = pattern(world, *call->second, d);

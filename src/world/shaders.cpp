@@ -192,11 +192,8 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
     ShaderInstance* const i = &instance;
     const auto& program = i->program;
     std::vector<rsl::ParameterValue> values;
+    for (const scene::Connection& c : call.connections) connect(*i, c, d);
     for (const scene::Param& written : call.params) {
-        if (const auto c = scene::connectionOf(written)) {
-            connect(*i, *c, d);
-            continue;
-        }
         const scene::Param renamed = asDeclared(written, *program);
         const scene::Param& given = renamed;
         const rsl::ParameterInfo* p = nullptr;
@@ -307,6 +304,7 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
         if (!(i->toCurrent == shader->toCurrent)) c.space = spaceAt(i->toCurrent);
         for (const auto& [name, v] : i->parameters.numbers) c.numbers[name] = v;
         for (const auto& [name, v] : i->parameters.strings) c.strings[name] = v;
+        c.connections = i->connections;
         dropMissingHandles(*i, c.strings, called, d);
         c.computed = i->program->computedParameters(i->given, {});
         copy->coShaders.push_back(std::move(c));
@@ -324,6 +322,7 @@ rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::
     o.suspend = settings_.suspend && i.program->kind() == rsl::ShaderKind::Surface;
     o.outputs = outputs;
     for (const auto& [k, v] : i.parameters.strings) o.stringParameters.push_back({k, v});
+    o.connections = i.connections;
     o.coShaders = i.coShaders;
     o.varyingParameters = varying;
     o.sentParameters = i.sent;

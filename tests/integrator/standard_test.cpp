@@ -131,6 +131,71 @@ TEST(Standard, WhiteFurnaceOfRis) {
     };
     for (const Furnace& f : all) expectFurnace(f);
 }
+// Light that walks below a white sky's floor leaves it by the albedos of the three ranges together: weight times colour of each.
+TEST(Standard, AlbedosOfSubsurfaceRangesAddUp) {
+    Settings s = withShaders(Hider::Path);
+    s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders/ris");
+    Scene scene(
+        inWorld(
+            std::string(kSky) +
+            "Bxdf \"PxrLMSubsurface\" \"b\" \"color nearColor\" [1 1 1] \"float nearWeight\" [.2] \"color midColor\" [1 .5 0] "
+            "\"float midWeight\" [.3] \"color farColor\" [1 0 0] \"float farWeight\" [.4] \"float unitLength\" [1e-3]\n" +
+            kFloor),
+        s);
+    const Moments m = scene.estimate(viewAt(30), samples(20000));
+    const double want[3] = {.9, .35, .2};
+    for (int k = 0; k < 3; ++k) {
+        EXPECT_LE(m.se(k), .012);
+        EXPECT_NEAR(m.mean(k), want[k], .015 + kZ * m.se(k)) << k;
+    }
+}
+
+/// A floor of that material under a white sky.
+void expectNodes(const std::string& nodes, const double (&want)[3], double within) {
+    Settings s = withShaders(Hider::Path);
+    s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders/ris");
+    Scene scene(inWorld(std::string(kSky) + nodes + kFloor), s);
+    const Moments m = scene.estimate(viewAt(30), samples(2000));
+    for (int k = 0; k < 3; ++k) EXPECT_NEAR(m.mean(k), want[k], within + kZ * m.se(k)) << nodes;
+}
+
+// Layers of PRMan 20: lambertian ones of albedo a and mask m leave (1 - m) of what is below. In a white furnace the albedo is
+// seen.
+TEST(Standard, LayersOfLmMaterials) {
+    const std::string plain = " \"color specularColor\" [0 0 0]", take = " \"reference struct lmlayer\" [\"%:result\"]";
+    const auto from = [&](const char* handle) {
+        std::string t = take;
+        return t.replace(t.find('%'), 1, handle);
+    };
+    const std::string red = "Pattern \"PxrLMLayer\" \"red\" \"float layerMask\" [.25] \"color diffuseColor\" [1 0 0]" + plain +
+                            "\n",
+                      base = "Bxdf \"PxrLMDiffuse\" \"b\" \"color frontColor\" [.2 .2 .2] \"color backColor\" [.2 .2 .2]";
+    const auto green = [&](const char* mask) {
+        return std::string("Pattern \"PxrLMLayer\" \"green\" \"float layerMask\" [") + mask + "] \"color diffuseColor\" [0 1 0]" +
+               plain + from("red") + "\n";
+    };
+    const struct {
+        std::string nodes;
+        double want[3], within;
+    } all[] = {
+        {red + base + from("red") + "\n", {.4, .15, .15}, 1e-4},
+        {red + green("0") + base + from("green") + "\n", {.4, .15, .15}, 1e-4}, // a layer that is not there changes nothing
+        {red + green(".5") + base + from("green") + "\n",
+         {.325, .45, .075},
+         1e-4}, // red on top: .25 red + .375 green + .375 base
+        {red + "Pattern \"PxrLMLayer\" \"blue\" \"float layerMask\" [.5] \"color diffuseColor\" [0 0 1]" + plain +
+             "\nPattern \"PxrLMMixer\" \"m\" \"reference struct baselayer\" [\"red:result\"] \"reference struct layer1\" "
+             "[\"blue:result\"] \"float layer1Mask\" [.5]\n" +
+             base + from("m") + "\n", // .25 blue, then .25 of .75 red, the rest base
+         {.3, .1125, .3625},
+         1e-4},
+        {"Pattern \"PxrLMLayer\" \"white\" \"color diffuseColor\" [1 1 1] \"color clearcoatColor\" [1 1 1]\n" + base +
+             from("white") + "\n",
+         {1, 1, 1},
+         .03}};
+    for (const auto& a : all) expectNodes(a.nodes, a.want, a.within);
+}
+
 // Nodes of Lama that are made of others: weights of mixtures and sums, and a layer that leaves the rest to the one below.
 TEST(Standard, LamaOfNodes) {
     const std::string two = "Bxdf \"LamaDiffuse\" \"a\" \"color diffuseColor\" [.8 .4 0]\nBxdf \"LamaDiffuse\" \"b\" \"color "
@@ -151,13 +216,7 @@ TEST(Standard, LamaOfNodes) {
                 "[\"a:bxdf_out\"]\n",
                 {1, 1, 1},
                 .02}};
-    for (const auto& c : all) {
-        Settings s = withShaders(Hider::Path);
-        s.shaderPaths.push_back(std::string(ALPENGLOW_SOURCE_DIR) + "/shaders/ris");
-        Scene scene(inWorld(std::string(kSky) + c.nodes + kFloor), s);
-        const Moments m = scene.estimate(viewAt(30), samples(2000));
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(m.mean(k), c.want[k], c.within + kZ * m.se(k)) << c.nodes;
-    }
+    for (const auto& c : all) expectNodes(c.nodes, c.want, c.within);
 }
 // Lambert and facets under a point light: each sees it once. The fit of what the facets leave for Lambert is within .006.
 TEST(Standard, PointLightOverLambertAndFacets) {

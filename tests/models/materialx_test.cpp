@@ -1,7 +1,6 @@
-// XML as it is read, and graphs of MaterialX as RSL.
+// Graphs of MaterialX as RSL.
 #include "models/materialx.h"
 #include "models/standardtext.h"
-#include "models/xml.h"
 #include <filesystem>
 #include <fstream>
 #include <gtest/gtest.h>
@@ -12,13 +11,6 @@ using namespace alpenglow;
 using namespace alpenglow::models;
 
 namespace {
-
-std::string fault(const std::string& text) {
-    Diagnostics d;
-    EXPECT_FALSE(parseXml(text, "x", d)) << text;
-    EXPECT_EQ(d.errors(), 1);
-    return d.all().empty() ? "" : std::to_string(d.all()[0].place.line) + ": " + d.all()[0].message;
-}
 
 const char* const kStandard = R"sl(/* a comment with surface standard( in it */
 #include "layers.h"
@@ -65,31 +57,6 @@ std::string surface(const std::string& inputs) {
 }
 
 } // namespace
-
-TEST(Xml, ReadsElementsAndAttributes) {
-    Diagnostics d;
-    const auto x = parseXml("<?xml?><!-- <no> --><a k='1 &lt; 2' l=\"x\">text<b/>\n<ns:c><![CDATA[<z>]]></ns:c ></a>", "x", d);
-    ASSERT_TRUE(x);
-    EXPECT_EQ(x->attribute("k"), "1 < 2");
-    EXPECT_EQ(x->attribute("l"), "x");
-    EXPECT_EQ(x->attribute("none"), "");
-    ASSERT_EQ(x->children.size(), 2u);
-    EXPECT_EQ(x->children[1].name, "ns:c");
-    EXPECT_EQ(x->children[1].line, 2);
-}
-
-TEST(Xml, FaultsHaveTheirLine) {
-    EXPECT_EQ(fault(""), "1: this is no sound XML: there is no element");
-    EXPECT_EQ(fault("<a>\n<b>\n</a>"), "3: this is no sound XML: </a> ends another element than the one that is open");
-    EXPECT_EQ(fault("<a>"), "1: this is no sound XML: <a> is not closed");
-    EXPECT_EQ(fault("<a/>\n<b/>"), "2: this is no sound XML: there is something behind the outermost element");
-    for (const char* t : {"<a b>", "<a b=c/>", "<a b=\"", "<a b=\"&x;\"/>", "<a b='<'/>", "<!DOCTYPE a [<!ENTITY b \"bb\">]><a/>",
-                          "<a", "<", "<a><!-- ", "</a>"})
-        EXPECT_NE(fault(t), "") << t;
-    std::string deep;
-    for (int i = 0; i < 100000; ++i) deep += "<a>";
-    EXPECT_NE(fault(deep).find("more than 64 deep"), std::string::npos);
-}
 
 TEST(StandardTextTest, IsTakenApart) {
     const auto t = takeApart(kStandard);

@@ -181,6 +181,14 @@ TEST(KnownOptions, PlainValues) {
     EXPECT_TRUE(known::plainValue("").numbers.empty());
 }
 
+// What others say by Hider is said elsewhere here.
+TEST(KnownOptions, HidersSayWhereSamplesAreSaid) {
+    const auto samples = read("Hider \"path\" \"int samples\" 64\n")->only();
+    EXPECT_EQ(samples.severity, Severity::Warning);
+    EXPECT_NE(samples.hint.find("PixelSamples"), std::string::npos) << samples.hint;
+    EXPECT_NE(read("Hider \"path\" \"int maxdepth\" 4\n")->only().hint.find("maxdepth"), std::string::npos);
+}
+
 TEST(KnownOptions, NamesForHints) {
     EXPECT_EQ(known::findKnown(known::knownOptions(), "trace:maxdepth")->type, "int");
     EXPECT_EQ(known::findKnown(known::knownOptions(), "trace:maxdpth"), nullptr);

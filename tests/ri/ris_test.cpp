@@ -16,7 +16,7 @@ namespace {
 
 /// The connection of the surface of a primitive, and the pattern that it means.
 scene::Connection connectionOf(const scene::Primitive& p) {
-    const auto all = scene::connectionsOf(*p.attributes->surface);
+    const auto& all = p.attributes->surface->connections;
     EXPECT_EQ(all.size(), 1u);
     return all.empty() ? scene::Connection{} : all[0];
 }
@@ -45,7 +45,7 @@ TEST(Ris, PatternsEndWithTheirBlock) {
     EXPECT_EQ(c->only().code, Rie::BadHandle);
     EXPECT_EQ(c->only().place.line, 6);
     EXPECT_NE(c->only().hint.find("mind"), std::string::npos);
-    EXPECT_TRUE(scene::connectionsOf(*c->primitive().attributes->surface).empty());
+    EXPECT_TRUE(c->primitive().attributes->surface->connections.empty());
 }
 
 TEST(Ris, HandlesMayHaveColonsAndElementsMayBeConnected) {
@@ -160,10 +160,34 @@ TEST(Ris, PxrOcclusionSeesOneSurfaceEverywhere) {
 }
 
 TEST(Ris, WhatIsLeftOutIsSaidOnce) {
-    auto c = inWorld("LightFilter \"PxrBarn\" \"b\"\nLightFilter \"PxrBarn\" \"c\"\nSampleFilter \"PxrCryptomatte\" \"m\"\n"
+    auto c = inWorld("LightFilter \"PxrBarn\" \"b\"\nLightFilter \"PxrBarn\" \"c\"\nSampleFilter \"PxrGrade\" \"m\"\n"
                      "EnableLightFilter \"l\" \"b\" 1\nSphere 1 -1 1 360");
     EXPECT_EQ(c->count(), 2u) << c->messages();
     for (const Diagnostic& d : c->diagnostics.all()) EXPECT_EQ(d.severity, Severity::Warning);
+}
+
+TEST(Ris, SubsetsOfLightFiltersAreSaidOnce) {
+    const std::string ball =
+        "AttributeBegin\nAttribute \"lightfilter\" \"string subset\" [\"rods\"]\nSphere 1 -1 1 360\nAttributeEnd\n";
+    const auto c = inWorld("LightFilter \"PxrRodLightFilter\" \"f\"\nLight \"PxrDomeLight\" \"l\"\n" + ball + ball);
+    int warnings = 0;
+    for (const Diagnostic& d : c->diagnostics.all())
+        if (d.severity == Severity::Warning) ++warnings;
+    EXPECT_EQ(warnings, 1) << c->messages();
+    EXPECT_NE(c->messages().find("lightfilter:subset is not obeyed"), std::string::npos) << c->messages();
+    EXPECT_EQ(inWorld("Light \"PxrDomeLight\" \"l\"\n" + ball)->messages().find("not obeyed"), std::string::npos); // no filters
+}
+
+TEST(Ris, SampleFilterPxrCryptomatteNamesAPicture) {
+    const auto c = read("SampleFilter \"PxrCryptomatte\" \"c\" \"string filename\" [\"m.exr\"] \"string layer\" [\"material\"]\n"
+                        "SampleFilter \"PxrCryptomatte\" \"d\" \"string filename\" [\"n.exr\"]\n"
+                        "SampleFilter \"PxrCryptomatte\" \"d\" \"string filename\" [\"o.exr\"]\n"
+                        "WorldBegin\nBxdf \"PxrDiffuse\" \"skin\"\nSphere 1 -1 1 360\nWorldEnd\n");
+    EXPECT_EQ(c->count(), 0u) << c->messages();
+    ASSERT_EQ(c->frame().options.mattes.size(), 2u);
+    EXPECT_EQ(c->frame().options.mattes.at("c").name, "m.exr");
+    EXPECT_EQ(c->frame().options.mattes.at("d").name, "o.exr"); // the handle's last
+    EXPECT_EQ(c->primitive().attributes->surface->handle, "skin");
 }
 
 TEST(Ris, LightsHaveGeometry) {
@@ -193,9 +217,9 @@ const char* kNetworkXml = "<?xml version=\"1.0\"?>\n<RenderManOSLNetwork Version
                           "</RenderManOSLNetwork>\n";
 
 TEST(Ris, NetworksOfOslAreRead) {
-    std::string why;
-    const auto n = oslNetwork(kNetworkXml, why);
-    ASSERT_TRUE(n) << why;
+    Diagnostics said;
+    const auto n = oslNetwork(kNetworkXml, "net.xml", said);
+    ASSERT_TRUE(n) << said.all().at(0).message;
     ASSERT_EQ(n->nodes.size(), 3u);
     EXPECT_EQ(n->nodes[1].shader + n->nodes[1].layer, "stripesB");
     EXPECT_EQ(n->nodes[2].layer, "blend"); // without a layer
@@ -204,15 +228,24 @@ TEST(Ris, NetworksOfOslAreRead) {
               "B Cout blend first");
     const std::string xml = kNetworkXml;
     std::string lost = xml;
-    lost.replace(lost.find("<Source><NodeId>stripes</NodeId><NodeLayer>B"), 45, "<Source><NodeId>nobody</NodeId><NodeLayer>C");
+    lost.replace(lost.find("<Source><NodeId>stripes</NodeId><NodeLayer>B"), 44, "<Source><NodeId>nobody</NodeId><NodeLayer>C");
     for (const std::string& bad :
          {std::string(), std::string("<"), std::string("<a><Node></Node></a>"), lost,
           std::string("<RenderManOSLNetwork><Node></Node>"), std::string("<!-- <RenderManOSLNetwork>")}) {
-        why.clear();
-        EXPECT_FALSE(oslNetwork(bad, why)) << bad;
-        EXPECT_FALSE(why.empty()) << bad;
+        Diagnostics faults;
+        EXPECT_FALSE(oslNetwork(bad, "net.xml", faults)) << bad;
+        ASSERT_EQ(faults.all().size(), 1u) << bad;
+        EXPECT_GT(faults.all()[0].place.column, 0) << bad;
     }
-    for (size_t cut = 0; cut < xml.size(); ++cut) oslNetwork(xml.substr(0, cut), why); // ends
+    for (size_t cut = 0; cut < xml.size(); ++cut) {
+        Diagnostics faults;
+        EXPECT_EQ(oslNetwork(xml.substr(0, cut), "net.xml", faults).has_value(), cut + 1 == xml.size())
+            << cut; // the last line end
+    }
+    Diagnostics where;
+    EXPECT_FALSE(oslNetwork(lost, "net.xml", where));
+    EXPECT_EQ(where.all()[0].place.line, 8);
+    EXPECT_EQ(where.all()[0].place.column, 13); // of <Source>, behind <Connection>
 }
 
 TEST(Ris, ALayerOfANetworkIsAPatternOfItsOwn) {
@@ -234,10 +267,12 @@ TEST(Ris, ALayerOfANetworkIsAPatternOfItsOwn) {
     const auto at = last->primitive().attributes->coshaders.find(connectionOf(last->primitive()).handle);
     ASSERT_NE(at, last->primitive().attributes->coshaders.end()) << last->messages();
     EXPECT_EQ(at->second->name, "blend");
-    EXPECT_EQ(scene::connectionsOf(*at->second).at(0).parameter, "first");
+    EXPECT_EQ(at->second->connections.at(0).parameter, "first");
     EXPECT_EQ(inWorld("Pattern \"PxrOSL\" \"m\" \"string network\" \"nowhere\"\nSphere 1 -1 1 360")->only().code, Rie::NoFile);
     std::ofstream(folder / "net.xml") << "<html/>";
-    EXPECT_EQ(read(option + first + "Sphere 1 -1 1 360\nWorldEnd\n")->only().code, Rie::BadFile);
+    const auto bad = read(option + first + "Sphere 1 -1 1 360\nWorldEnd\n");
+    EXPECT_EQ(bad->only().code, Rie::BadFile);
+    EXPECT_EQ(bad->only().place.file, (folder / "net.xml").string());
     std::filesystem::remove_all(folder);
 }
 

@@ -52,6 +52,27 @@ TEST(TextureSystem, DamagedFilesAreReportedOnce) {
     EXPECT_EQ(d.errors(), 1) << messages(d);
 }
 
+// A lamp that saw nothing casts no shadow: said once for a map, however often it is read.
+TEST(TextureSystem, EmptyShadowMapsAreSaidOnce) {
+    Scratch s;
+    Image nothing = makeImage(8, 8, {"z"}), something = nothing;
+    nothing.metadata["textureformat"] = something.metadata["textureformat"] = "Shadow";
+    for (float& z : nothing.data) z = 1e38f;
+    something.data = nothing.data;
+    something.data[17] = 5;
+    save(s, "nothing.exr", nothing, display::Format::Exr, display::Sample::Float);
+    save(s, "something.exr", something, display::Format::Exr, display::Sample::Float);
+    Diagnostics d;
+    TextureSystem sys(d);
+    for (int i = 0; i < 3; ++i) {
+        EXPECT_TRUE(sys.open("nothing.exr", {s.dir.string()}));
+        EXPECT_TRUE(sys.open("something.exr", {s.dir.string()}));
+    }
+    ASSERT_EQ(d.all().size(), 1u) << messages(d);
+    EXPECT_EQ(d.all()[0].severity, Severity::Warning);
+    EXPECT_NE(d.all()[0].message.find("nothing.exr\" is empty"), std::string::npos) << messages(d);
+}
+
 TEST(TextureSystem, ManyThreadsOneLoad) {
     Scratch s;
     save(s, "a.tif", pattern(200, 100, {"r", "g", "b"}));

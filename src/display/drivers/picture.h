@@ -33,7 +33,7 @@ std::string stringParam(const DriverSetup&, const std::string& name, const std::
                         const std::string& fallback, Diagnostics&);
 
 // The descriptors, one per file.
-extern const DriverDescriptor fileDriver, framebufferDriver, nullDriver, zfileDriver, deepDriver, otherDriver;
+extern const DriverDescriptor fileDriver, framebufferDriver, nullDriver, zfileDriver, deepDriver, cryptomatteDriver, otherDriver;
 /// The driver of a format: writes it whatever the name.
 DriverDescriptor formatDriver(Format);
 

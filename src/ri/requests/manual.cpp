@@ -25,6 +25,8 @@ std::string cell(std::string_view s) {
     return out;
 }
 
+} // namespace
+
 const char* titleOf(Kind k) {
     switch (k) {
     case Kind::Structure:
@@ -51,6 +53,8 @@ const char* titleOf(Kind k) {
     return "Other";
 }
 
+namespace {
+
 std::string example(const Request& r) { return "`" + std::string(r.name) + (r.sample.empty() ? "" : " ") + cell(r.sample) + "`"; }
 
 } // namespace
@@ -68,8 +72,7 @@ std::string requestManual() {
         "`Attribute`, `Hider` and `Display` are in [options.md](options.md); a first scene is in [tutorial.md](tutorial.md).\n\n"
         "[n] is a fixed count, [] any number, ? may be left out, .. is a list of parameters: \"type name\" value. Brackets\n"
         "around fixed counts are optional.\n";
-    for (Kind k : {Kind::Structure, Kind::Option, Kind::Attribute, Kind::Shader, Kind::Light, Kind::Transform, Kind::Primitive,
-                   Kind::Archive, Kind::Texture, Kind::Other}) {
+    for (const Kind k : kManualOrder) {
         out += fmt::format(
             "\n## {}\n\n| request | arguments | where | in motion blocks | what it does | example |\n|---|---|---|---|---|---|\n",
             titleOf(k));

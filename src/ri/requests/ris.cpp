@@ -68,12 +68,25 @@ void integrator(Interpreter& in, const Call& c) {
 /// What changes pictures afterwards.
 void leftOut(Interpreter& in, const Call& c) {
     in.isRis();
-    const std::string name = c.text(0);
-    const bool cryptomatte = name.find("ryptomatte") != std::string::npos;
-    in.reporter.once(fmt::format("ri:{}:{}", c.request->name, name), Severity::Warning, Rie::Incapable, c.place,
-                     cryptomatte ? "PxrCryptomatte is left out: no matte is written"
-                                 : fmt::format("{} \"{}\" is left out: the picture is drawn without it", c.request->name, name),
-                     cryptomatte ? "\"__id\" and \"__name\" show which object is where (docs/options.md, displays)" : "");
+    in.reporter.once(fmt::format("ri:{}:{}", c.request->name, c.text(0)), Severity::Warning, Rie::Incapable, c.place,
+                     fmt::format("{} \"{}\" is left out: the picture is drawn without it", c.request->name, c.text(0)));
+}
+
+/// PxrCryptomatte writes a picture beside those of the displays.
+void sampleFilter(Interpreter& in, const Call& c) {
+    if (c.text(0) != "PxrCryptomatte") return leftOut(in, c);
+    in.isRis();
+    scene::Display d;
+    d.type = "cryptomatte";
+    d.place = c.place;
+    d.params = in.bind(c, Use::Other);
+    const scene::Param* file = scene::find(d.params, "filename");
+    d.name = file && !file->strings.empty() ? file->strings[0] : "";
+    std::erase_if(d.params, [](const scene::Param& p) { return p.name == "filename"; });
+    if (d.name.empty())
+        return in.reporter.error(Rie::MissingData, c.place, "PxrCryptomatte has no file: no matte is written",
+                                 "\"string filename\" [\"matte.exr\"]");
+    in.options.mattes[c.text(1)] = std::move(d);
 }
 
 void enableLightFilter(Interpreter& in, const Call&) { in.isRis(); }
@@ -107,8 +120,10 @@ std::vector<Request> risRequests() {
          "\"PxrPathTracer\" \"i\" \"int maxPathLength\" 6", integrator},
         {"DisplayFilter", named, Kind::Other, any, false, "A filter of pictures: said once and left out.", "\"PxrGrade\" \"g\"",
          leftOut},
-        {"SampleFilter", named, Kind::Other, any, false, "A filter of samples: said once and left out.",
-         "\"PxrCryptomatte\" \"c\"", leftOut},
+        {"SampleFilter", named, Kind::Other, any, false,
+         "\"PxrCryptomatte\" writes ids and coverages of objects into a picture of its own, as Display \"cryptomatte\"; other "
+         "filters of samples are said once and left out.",
+         "\"PxrCryptomatte\" \"c\" \"string filename\" [\"matte.exr\"] \"string layer\" [\"identifier:name\"]", sampleFilter},
     };
 }
 

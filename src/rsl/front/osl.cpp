@@ -121,6 +121,13 @@ private:
         return is(end + 1, ";") ? end + 2 : end + 1;
     }
 
+    /// Where another parameter begins in one from its type at i up to e; e: nowhere. No value has a type with a name behind it.
+    size_t parameterInside(size_t i, size_t e) const {
+        for (size_t k = i + 1; k < e; k = opens(w_[k]) ? closing(k) + 1 : k + 1)
+            if (is(k, "output") || (isType(k) && isName(k + 1) && k + 1 < e)) return k;
+        return e;
+    }
+
     /// "output color c = 0, float x" as RSL has it; parameters of shaders can be connected.
     std::string parameters(size_t i, size_t end, bool ofShader) {
         std::string out;
@@ -130,6 +137,8 @@ private:
             out += lines(w_[i]);
             i += output;
             if (is(i, "closure")) return fail(i, "closures are not translated: materials are Bxdf here"), out;
+            if (const size_t next = parameterInside(i, e); next < e)
+                return fail(next, "a comma is missing before this parameter", "parameters are separated by commas"), out;
             if (!isType(i) || !isName(i + 1)) return fail(i, "a parameter of a type that RSL has is expected here"), out;
             const std::string t = type(w_[i].text);
             if (output) out += "output ";

@@ -9,12 +9,9 @@ namespace alpenglow::rsl::ir {
 /// Handles that a connection of the shader or of a co-shader names.
 std::set<std::string> Builder::connectedHandles() const {
     std::set<std::string> handles;
-    const auto look = [&](const auto& strings) {
-        for (const auto& [key, text] : strings)
-            if (const auto c = Connected::isKey(key) ? Connected::parse(text) : std::nullopt) handles.insert(c->handle);
-    };
-    look(options_.stringParameters);
-    for (const CoShader& c : options_.coShaders) look(c.strings);
+    for (const auto& [to, from] : options_.connections) handles.insert(from.handle);
+    for (const CoShader& c : options_.coShaders)
+        for (const auto& [to, from] : c.connections) handles.insert(from.handle);
     return handles;
 }
 
@@ -80,28 +77,23 @@ Inst* Builder::connectedOutput(const Connected& c, const Symbol& to) {
     return nullptr; // there is no such pattern, which was reported when it was bound
 }
 
-/// The value that a connection has for a parameter or an element of it; null if there is none. strings: of the instance.
-template <class Strings> Inst* Builder::connected(const Symbol& s, int element, const Strings& strings) {
-    const std::string key = Connected::key(s.name, element);
-    for (const auto& [name, text] : strings)
-        if (name == key)
-            if (const auto c = Connected::parse(text)) return connectedOutput(*c, s);
-    return nullptr;
+/// The value that a connection has for a parameter or an element of it; null if there is none. connections: of the instance.
+Inst* Builder::connected(const Symbol& s, int element, const Connections& connections) {
+    const auto c = connections.find({s.name, element});
+    return c == connections.end() ? nullptr : connectedOutput(c->second, s);
 }
 
-Inst* Builder::connectedParameter(const Symbol& s) {
-    return s.type.array ? nullptr : connected(s, -1, options_.stringParameters);
-}
+Inst* Builder::connectedParameter(const Symbol& s) { return s.type.array ? nullptr : connected(s, -1, options_.connections); }
 
 Inst* Builder::connectedParameter(const Symbol& s, const CoShader& of) {
-    return s.type.array ? nullptr : connected(s, -1, of.strings);
+    return s.type.array ? nullptr : connected(s, -1, of.connections);
 }
 
 /// Puts what is connected to elements of an array parameter of a co-shader there.
 void Builder::connectElements(const Symbol& s, Inst* array, const CoShader& of) {
     for (int n = 0; n < arrayLength(array); ++n)
-        if (of.strings.count(Connected::key(s.name, n)))
-            if (Inst* v = connected(s, n, of.strings))
+        if (of.connections.count({s.name, n}))
+            if (Inst* v = connected(s, n, of.connections))
                 emit(Op::ArrayStore, Kind::None, {array, constant(static_cast<float>(n)), v});
 }
 

@@ -253,7 +253,7 @@ private:
     std::set<std::string> connectedHandles() const;
     bool runPattern(size_t instance);
     Inst* connectedOutput(const Connected&, const Symbol& to);
-    template <class Strings> Inst* connected(const Symbol&, int element, const Strings&);
+    Inst* connected(const Symbol&, int element, const Connections&);
     Inst* connectedParameter(const Symbol&);
     Inst* connectedParameter(const Symbol&, const CoShader& of);
     void connectElements(const Symbol&, Inst* array, const CoShader& of);

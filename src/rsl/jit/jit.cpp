@@ -123,6 +123,7 @@ std::string codeKey(const KernelOptions& o) {
     auto strings = o.stringParameters;
     std::sort(strings.begin(), strings.end());
     for (const auto& [name, value] : strings) text(name), text(value);
+    if (!o.connections.empty()) text(connectionKey(o.connections));
     k += "\nvarying ";
     auto varying = o.varyingParameters;
     std::sort(varying.begin(), varying.end());

@@ -53,6 +53,23 @@ TEST(Osl, ParametersThatAreBoundToThePrimitiveBeginWithItsVariables) {
     EXPECT_NE(rsl->find("v_= 2;"), std::string::npos) << *rsl;
 }
 
+TEST(Osl, AMissingCommaIsSaidWhereItIsMissing) {
+    const std::pair<const char*, const char*> all[] = {
+        {"shader a(float x = 1\n         float y = 2, output color c = 0) { c = x; }", "x.osl:2:10"},
+        {"shader a(float x float y) {}", "x.osl:1:18"},
+        {"shader a(color x = color(1, 0, 0) output float r = 0) { r = 1; }", "x.osl:1:35"},
+        {"float f(float x float y) { return x; }\nshader a(output float r = 0) { r = f(u, v); }", "x.osl:1:17"}};
+    for (const auto& [text, place] : all) {
+        std::string said;
+        EXPECT_EQ(compiled(text, &said), nullptr) << text;
+        EXPECT_NE(said.find(place), std::string::npos) << text << '\n' << said;
+        EXPECT_NE(said.find("a comma is missing before this parameter"), std::string::npos) << said;
+    }
+    compiled("shader a(color x = color(float(1), 0, 0), float y = (float) noise(u) [[string help = \"float y\"]],\n output color "
+             "c = 0,) "
+             "{ c = x * y; }");
+}
+
 TEST(Osl, FormsThatDiffer) {
     compiled("shader a(output color c = 0) { c = (float) noise(\"uperlin\", u * 10, v * 10) * color(\"hsv\", .5, 1, 1); }");
     compiled("shader noise(output color c = 0) { c = noise(\"cell\", P); c += snoise(P); }");

@@ -1,0 +1,16 @@
+// What the display of a type "cryptomatte" asks for (mattepass.h).
+#pragma once
+#include "scene/param.h"
+#include <string>
+#include <vector>
+
+namespace alpenglow::render {
+
+struct MattesAsked {
+    std::vector<std::string> layers; ///< attributes "class:name", or "material"
+    int ranks = 6;                   ///< 2 to limits::kMatteRanks, even
+};
+/// By the parameters "layer" and "levels" of a Display; bad ones are reported.
+MattesAsked mattesAsked(const scene::ParamList&, const SourcePlace&, Diagnostics&);
+
+} // namespace alpenglow::render

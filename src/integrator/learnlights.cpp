@@ -32,13 +32,14 @@ LightDomain domainOf(const BoundLight& l) { return l.isSky() ? LightDomain() : L
 } // namespace
 
 bool mayTraceBefore(const World& world) {
-    const auto& w = static_cast<const WorldImpl&>(world);
-    return w.accel_ && w.settings_.hider == Hider::Path && mayTrace(w);
+    const auto* w = dynamic_cast<const WorldImpl*>(&world); // null: a picture that is known, as tests have it
+    return w && w->accel_ && w->settings_.hider == Hider::Path && mayTrace(*w);
 }
 
 bool mayGuideLights(const World& world) {
+    if (!mayTraceBefore(world)) return false;
     const auto& w = static_cast<const WorldImpl&>(world);
-    if (!w.photons_ || !mayTraceBefore(world)) return false;
+    if (!w.photons_) return false;
     for (const WorldImpl::LightList& l : w.lightLists_)
         if (l.ofAll || !l.chooser.empty()) return false;
     return std::any_of(w.lights_.begin(), w.lights_.end(), [&](const BoundLight& l) { return mayGuide(w, l); });

@@ -1,4 +1,5 @@
 // Programs in C of 1989 draw the specification's examples: as closed forms say, and to the bit as their RIB is drawn.
+#include "../sanitized.h"
 #include "folder.h"
 #include <cmath>
 
@@ -10,6 +11,10 @@ namespace {
 
 class CPrograms : public capi::testing::Folder {
 protected:
+    void SetUp() override {
+        capi::testing::Folder::SetUp();
+        if (kSanitized) GTEST_SKIP() << "programs in C are not sanitized, so they cannot load the library";
+    }
     /// Pixels of `name` whose alpha is 1, and the sum of all.
     std::pair<int, double> covered(const display::Image& i) {
         const int a = i.channel("a");

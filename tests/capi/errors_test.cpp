@@ -1,4 +1,5 @@
 // Errors of the C binding: the codes of RISpec 3.2, 7.2, each by a call that brings it, in both kinds of contexts.
+#include "../sanitized.h"
 #include "folder.h"
 #include "ri/c/client.h"
 #include <functional>
@@ -173,6 +174,7 @@ TEST_F(CErrors, FiltersOfTheProgram) {
 
 // Some programs pass a text where the address of a string is due.
 TEST_F(CErrors, ATextInThePlaceOfAnAddress) {
+    if (kSanitized) GTEST_SKIP() << "a short text in the place of an address is read behind its end";
     RiBegin("x.rib");
     RtString right = "right";
     RiAttribute("user", "string a", "on", "string b", &right, "string c", "", RI_NULL);

@@ -1,5 +1,6 @@
 // Mattes of whole renders: coverages of edges at known places, ids of known names, and what the header says (Cryptomatte
 // specification 1.2).
+#include "base/limits.h"
 #include "command_folder.h"
 #include "display/imageio.h"
 #include "display/matte.h"
@@ -174,6 +175,27 @@ TEST_F(Cryptomatte, ThreadsChangeNothing) {
     ASSERT_EQ(one.data.size(), four.data.size());
     for (size_t i = 0; i < one.data.size(); ++i)
         ASSERT_EQ(std::bit_cast<uint32_t>(one.data[i]), std::bit_cast<uint32_t>(four.data[i])) << i;
+}
+
+TEST_F(Cryptomatte, LayersAndLevelsAreBounded) {
+    std::string layers;
+    for (size_t i = 0; i <= limits::kMatteLayers; ++i) layers += "\"user:a" + std::to_string(i) + "\" ";
+    const display::Image m =
+        picture(frame("Display \"m.exr\" \"cryptomatte\" \"rgba\" \"string[" + std::to_string(limits::kMatteLayers + 1) +
+                          "] layer\" [" + layers + "] \"int levels\" " + std::to_string(limits::kMatteRanks / 4),
+                      slab("a", "-1", "5")));
+    EXPECT_NE(said().find("there are more than 8 layers"), std::string::npos) << said();
+    EXPECT_EQ(said().find("levels\" must"), std::string::npos) << said();
+    EXPECT_EQ(m.channels.size(), 4 + limits::kMatteLayers * 2 * size_t(limits::kMatteRanks / 4));
+    EXPECT_EQ(std::bit_cast<uint32_t>(valueAt(m, 1, 0, "Crypto_user_a000.R")),
+              display::matteId("default")); // it has no such attribute
+    const auto most = [&](int levels) {
+        return picture(frame("Display \"m.exr\" \"cryptomatte\" \"rgba\" \"int levels\" " + std::to_string(levels),
+                             slab("a", "-1", "5")))
+            .channels.size();
+    };
+    EXPECT_EQ(most(limits::kMatteRanks), 4 + 2 * size_t(limits::kMatteRanks));
+    EXPECT_EQ(most(limits::kMatteRanks + 1), 4u + 2 * 6); // those by default
 }
 
 TEST_F(Cryptomatte, BadParametersAreSaid) {

@@ -24,19 +24,15 @@ constexpr Binding kBindings[] = {
     {"Clipping", "RtFloat hither, RtFloat yon"},
     {"Color", "RtColor color"},
     {"ColorSamples", "RtInt n, RtFloat nRGB[], RtFloat RGBn[]"},
-    {"Cone", "RtFloat height, RtFloat radius, RtFloat thetamax"},
     {"CropWindow", "RtFloat xmin, RtFloat xmax, RtFloat ymin, RtFloat ymax"},
     {"Curves", "RtToken type, RtInt ncurves, RtInt nvertices[], RtToken wrap"},
-    {"Cylinder", "RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax"},
     {"Declare", "RtToken name, RtToken declaration", "RtToken"},
     {"DepthOfField", "RtFloat fstop, RtFloat focallength, RtFloat focaldistance"},
     {"DetailRange", "RtFloat minvisible, RtFloat lowertransition, RtFloat uppertransition, RtFloat maxvisible"},
-    {"Disk", "RtFloat height, RtFloat radius, RtFloat thetamax"},
     {"EnableLightFilter", "RtToken light, RtToken filter, RtBoolean on"},
     {"GeneralPolygon", "RtInt nloops, RtInt nverts[]"},
     {"HierarchicalSubdivisionMesh", "RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], "
                                     "RtInt nargs[], RtInt intargs[], RtFloat floatargs[], RtToken stringargs[]"},
-    {"Hyperboloid", "RtPoint point1, RtPoint point2, RtFloat thetamax"},
     {"Illuminate", "RtLightHandle light, RtBoolean on"},
     {"LightSource", "RtToken name", "RtLightHandle"},
     {"MakeBump",
@@ -54,7 +50,6 @@ constexpr Binding kBindings[] = {
     {"ObjectInstance", "RtObjectHandle handle"},
     {"Opacity", "RtColor color"},
     {"Option", "RtToken name"},
-    {"Paraboloid", "RtFloat rmax, RtFloat zmin, RtFloat zmax, RtFloat thetamax"},
     {"PixelFilter", "RtFilterFunc filter, RtFloat xwidth, RtFloat ywidth"},
     {"Points", "RtInt npoints"},
     {"PointsGeneralPolygons", "RtInt npolys, RtInt nloops[], RtInt nverts[], RtInt verts[]"},
@@ -67,12 +62,10 @@ constexpr Binding kBindings[] = {
     {"Scale", "RtFloat sx, RtFloat sy, RtFloat sz"},
     {"ScreenWindow", "RtFloat left, RtFloat right, RtFloat bottom, RtFloat top"},
     {"Skew", "RtFloat angle, RtFloat dx1, RtFloat dy1, RtFloat dz1, RtFloat dx2, RtFloat dy2, RtFloat dz2"},
-    {"Sphere", "RtFloat radius, RtFloat zmin, RtFloat zmax, RtFloat thetamax"},
     {"SubdivisionMesh",
      "RtToken scheme, RtInt nfaces, RtInt nverts[], RtInt verts[], RtInt ntags, RtToken tags[], RtInt nargs[], "
      "RtInt intargs[], RtFloat floatargs[]"},
     {"TextureCoordinates", "RtFloat s1, RtFloat t1, RtFloat s2, RtFloat t2, RtFloat s3, RtFloat t3, RtFloat s4, RtFloat t4"},
-    {"Torus", "RtFloat majorradius, RtFloat minorradius, RtFloat phimin, RtFloat phimax, RtFloat thetamax"},
     {"Translate", "RtFloat dx, RtFloat dy, RtFloat dz"},
     {"TrimCurve", "RtInt nloops, RtInt ncurves[], RtInt order[], RtFloat knot[], RtFloat min[], RtFloat max[], RtInt n[], "
                   "RtFloat u[], RtFloat v[], RtFloat w[]"},
@@ -119,7 +112,9 @@ std::string prototypes(const Request& r) {
     const auto* own =
         std::find_if(std::begin(kBindings), std::end(kBindings), [&](const Binding& b) { return b.request == r.name; });
     const bool differs = own != std::end(kBindings);
-    const std::string name = "Ri" + std::string(r.name), arguments = differs ? std::string(own->arguments) : argumentsOf(r);
+    const std::string name = "Ri" + std::string(r.name), arguments = !r.c.empty() ? std::string(r.c)
+                                                                     : differs    ? std::string(own->arguments)
+                                                                                  : argumentsOf(r);
     const std::string_view result = differs ? own->result : "RtVoid";
     if (r.name == "MotionBegin")
         return declaration(result, name, arguments) + declaration(result, name + "V", "RtInt n, RtFloat times[]");

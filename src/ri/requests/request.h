@@ -46,6 +46,8 @@ struct Request {
     std::string_view sample; ///< arguments that are correct; the tests read every one
     Handler handler;
     MatrixOf matrix = nullptr;
+    /// Arguments of the call in C without the parameter list, where they do not follow from the signature (header.h).
+    std::string_view c = {};
 
     // Filled in from the signature when the table is built.
     std::vector<ArgSpec> args = {};

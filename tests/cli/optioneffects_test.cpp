@@ -95,7 +95,7 @@ TEST_F(OptionEffects, HitModes) {
 
 // More samples than the memory has room for: the message names them.
 TEST_F(OptionEffects, SamplesWithoutMemory) {
-    if (kSanitized) GTEST_SKIP() << "AddressSanitizer ends the program where an allocation fails";
+    if (alpenglow::kSanitized) GTEST_SKIP() << "AddressSanitizer ends the program where an allocation fails";
     write("a.rib", "Format 640 480 1\nPixelSamples 2000 2000\nHider \"hidden\"\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
     run("render --memory-limit 600M -o a.exr a.rib");
     const std::string said = text("err");

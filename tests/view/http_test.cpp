@@ -239,7 +239,7 @@ TEST_F(Http, ACrowdOfConnectionsDoesNotKeepOthersOut) {
         if (i % 3 == 0) s.send("GET / HTTP/1.1\r\nX: ");
     }
     EXPECT_EQ(made, all);
-    if (!kSanitized) EXPECT_LT(residentKiB(), before + size_t(all) * 2); // a sanitizer keeps what is freed
+    if (!alpenglow::kSanitized) EXPECT_LT(residentKiB(), before + size_t(all) * 2); // a sanitizer keeps what is freed
     viewer.send(get(server->port(), "/known"));                          // who was known stays
     EXPECT_EQ(bodyOf(viewer.answer()), "GET /known []");
     EXPECT_EQ(bodyOf(ask(get(server->port(), "/new"))), "GET /new []");

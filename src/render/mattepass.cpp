@@ -11,7 +11,7 @@
 namespace alpenglow::render {
 namespace {
 
-constexpr int kBandRows = 16;                   // of pixels that a task makes
+constexpr int kBandRows = 16;               // of pixels that a task makes
 constexpr const char* kUnnamed = "default"; // as other renderers call what has no name
 
 /// The name that a surface has in a layer.
@@ -206,7 +206,8 @@ display::MattesRef seeMattes(Job& job, const MattesAsked& asked, const PixelFilt
         bands, &job.halt,
         [&](int worker, size_t i) {
             const int y0 = w.y0 + int(i) * kBandRows;
-            MatteLoop(job, asked, filter, nx, ny, jitter, seed, *mattes).band(worker, y0, std::min(w.y1, y0 + kBandRows), names[i]);
+            MatteLoop(job, asked, filter, nx, ny, jitter, seed, *mattes)
+                .band(worker, y0, std::min(w.y1, y0 + kBandRows), names[i]);
         },
         [&](size_t done) {
             job.pollStop();

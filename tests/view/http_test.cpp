@@ -240,7 +240,7 @@ TEST_F(Http, ACrowdOfConnectionsDoesNotKeepOthersOut) {
     }
     EXPECT_EQ(made, all);
     if (!alpenglow::kSanitized) EXPECT_LT(residentKiB(), before + size_t(all) * 2); // a sanitizer keeps what is freed
-    viewer.send(get(server->port(), "/known"));                          // who was known stays
+    viewer.send(get(server->port(), "/known"));                                     // who was known stays
     EXPECT_EQ(bodyOf(viewer.answer()), "GET /known []");
     EXPECT_EQ(bodyOf(ask(get(server->port(), "/new"))), "GET /new []");
     size_t fds = 0;

@@ -257,7 +257,7 @@ RtVoid RiProcDynamicLoad(RtPointer data, RtFloat detail);
 RtVoid RiProcFree(RtPointer data);
 /* The callback of RiReadArchive gets the comments of the archive, at their places: "comment" or "structure", and the text as a
  * format without arguments. */
-/* Made from the table of requests by `alpenglow info --requests --header`: */
+/* Generated from the table of requests by `alpenglow info --requests --header`: */
 /* Structure */
 RtVoid RiAttributeBegin(void);
 RtVoid RiAttributeEnd(void);
@@ -490,7 +490,7 @@ RtVoid RiPixelSampleImagerV(RtToken name, RtInt n, RtToken tokens[], RtPointer v
 RtVoid RiSampleFilter(RtToken name, RtToken handle, ...);
 RtVoid RiSampleFilterV(RtToken name, RtToken handle, RtInt n, RtToken tokens[], RtPointer values[]);
 RtVoid RiSystem(RtToken command);
-/* So far made. */
+/* End of the generated prototypes. */
 #undef RI_CHARS
 
 #ifdef __cplusplus

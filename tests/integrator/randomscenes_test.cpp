@@ -1,5 +1,6 @@
 // Random scenes whose lamps are found in two ways: as lights, which are sampled and weighed against the rays of lobes, and as
-// surfaces that shine, which only rays find. The second way knows no lights, so it shares no sampling with the first.
+// surfaces that shine, which only rays find. The second way knows no lights, so it shares no sampling with the first. No guides:
+// these are learned by the renderer, not by the integrator.
 #include "integrator/floorscene.h"
 #include <random>
 
@@ -125,10 +126,10 @@ TEST(RandomScenes, LightsSendWhatSurfacesOfTheSameRadianceSend) {
         for (int k = 0; k < 3; ++k) {
             const double se = std::hypot(sampled.se(k), found.se(k));
             precise += k == 1 && se < .02 * found.mean(k);
-            EXPECT_NEAR(sampled.mean(k), found.mean(k), kZ * se + 2e-3 * found.mean(k)) << seed << " " << k << scene.asLights();
+            EXPECT_NEAR(sampled.mean(k), found.mean(k), kZ * se) << seed << " " << k << scene.asLights();
         }
     }
-    EXPECT_GE(precise, scenes / 3) << "known to 2 %";
+    EXPECT_GE(precise, scenes / 3) << "scenes whose light is known to 2 %";
 }
 
 } // namespace randomscenes_test

@@ -15,7 +15,7 @@ std::string callPrototypes();
 
 /// The lines of include/ri.h between which the prototypes stand.
 inline constexpr std::string_view kPrototypesBegin =
-    "/* Made from the table of requests by `alpenglow info --requests --header`: */\n";
-inline constexpr std::string_view kPrototypesEnd = "/* So far made. */\n";
+    "/* Generated from the table of requests by `alpenglow info --requests --header`: */\n";
+inline constexpr std::string_view kPrototypesEnd = "/* End of the generated prototypes. */\n";
 
 } // namespace alpenglow::ri

@@ -122,7 +122,7 @@ std::vector<Request> risRequests() {
          leftOut},
         {"SampleFilter", named, Kind::Other, any, false,
          "\"PxrCryptomatte\" writes ids and coverages of objects into a picture of its own, as Display \"cryptomatte\"; other "
-         "filters of samples are said once and left out.",
+         "sample filters are reported once and ignored.",
          "\"PxrCryptomatte\" \"c\" \"string filename\" [\"matte.exr\"] \"string layer\" [\"identifier:name\"]", sampleFilter},
     };
 }

@@ -4,6 +4,7 @@
 #include "statistics/chisquare.h"
 #include "statistics/nightly.h"
 #include "world/skytable.h"
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -19,7 +20,23 @@ struct Sky {
     const char* name;
     int width, height;
     std::vector<float> weights;
+    std::vector<SkyTable::Refined> refined = {};
 };
+
+/// A sky with refined cells at both poles and between, one of them black but for two parts.
+Sky refinedSky() {
+    std::mt19937 rng(5);
+    std::uniform_real_distribution<float> one(0, 1);
+    Sky s{"refined cells", 16, 8, {}};
+    for (int i = 0; i < 16 * 8; ++i) s.weights.push_back(one(rng));
+    for (const auto& [column, row, side] : {std::array{3, 2, 4}, {0, 0, 2}, {15, 7, 8}, {4, 2, 32}}) {
+        SkyTable::Refined r{column, row, side, {}};
+        for (int i = 0; i < side * side; ++i)
+            r.weights.push_back(side == 32 ? (i == 40 || i == 555) * 4e4f : std::exp(6 * one(rng)));
+        s.refined.push_back(std::move(r));
+    }
+    return s;
+}
 
 std::vector<Sky> skies() {
     std::mt19937 rng(3);
@@ -72,6 +89,71 @@ TEST(SkyTable, DensitiesOfCells) {
                 sum += pdf * cellOf(s, y);
             }
         EXPECT_NEAR(sum, 1, 1e-5) << s.name;
+    }
+}
+
+TEST(SkyTable, PartsOfRefinedCells) {
+    const Sky s = refinedSky();
+    const SkyTable table(s.width, s.height, s.weights, s.refined);
+    const auto meanOf = [](const SkyTable::Refined& r) {
+        double sum = 0;
+        for (const float w : r.weights) sum += w;
+        return sum / double(r.weights.size());
+    };
+    double total = 0;
+    for (int i = 0; i < s.width * s.height; ++i) {
+        double weight = s.weights[size_t(i)];
+        for (const SkyTable::Refined& r : s.refined)
+            if (r.row * s.width + r.column == i) weight = meanOf(r);
+        total += weight * cellOf(s, i / s.width);
+    }
+    EXPECT_NEAR(table.integral(), total, 1e-6 * total);
+    for (const SkyTable::Refined& r : s.refined) {
+        const double mean = meanOf(r), part = cellOf(s, r.row) / (r.side * r.side), of = mean * cellOf(s, r.row) / total;
+        double all = 0;
+        for (const float w : r.weights) all += std::max<double>(w, SkyTable::kLeastPart * mean);
+        for (int y = 0; y < r.side; ++y)
+            for (int x = 0; x < r.side; ++x) {
+                const double weight = std::max<double>(r.weights[size_t(y * r.side + x)], SkyTable::kLeastPart * mean);
+                const Vec3 w = SkyTable::direction(r.column, r.row, s.width, s.height, (float(x) + .5f) / float(r.side),
+                                                   (float(y) + .5f) / float(r.side));
+                // Shares of floats from 0 to 1: those of a cell and of its part are good to 2^-24 or so.
+                EXPECT_NEAR(table.pdf(w) * part, of * weight / all, 4e-7) << r.side << ": " << x << " " << y;
+            }
+    }
+}
+
+TEST(SkyTable, FrequenciesOfParts) {
+    const Sky s = refinedSky();
+    const SkyTable table(s.width, s.height, s.weights, s.refined);
+    const int n = teststat::samples(400'000, 4'000'000);
+    std::mt19937 rng(unsigned(teststat::seedBase()) + 13);
+    std::uniform_real_distribution<float> one(0, 0x1.fffffep-1f);
+    std::vector<std::vector<double>> seen;
+    for (const SkyTable::Refined& r : s.refined) seen.push_back(std::vector<double>(size_t(r.side * r.side)));
+    for (int i = 0; i < n; ++i) {
+        Vec3 w;
+        float pdf;
+        ASSERT_TRUE(table.sample({one(rng), one(rng)}, w, pdf));
+        ASSERT_EQ(pdf, table.pdf(w));
+        const double turn = std::atan2(double(w.y), double(w.x)) / (2 * kPi), x = (turn < 0 ? turn + 1 : turn) * s.width;
+        const double y = std::acos(double(w.z)) / kPi * s.height; // rows are even in the angle, parts in z
+        for (size_t k = 0; k < s.refined.size(); ++k) {
+            const SkyTable::Refined& r = s.refined[k];
+            if (int(x) != r.column || int(y) != r.row) continue;
+            const double top = std::cos(kPi * r.row / s.height), end = std::cos(kPi * (r.row + 1) / s.height);
+            const int down = std::clamp(int((double(w.z) - top) / (end - top) * r.side), 0, r.side - 1);
+            seen[k][size_t(down * r.side + std::clamp(int((x - r.column) * r.side), 0, r.side - 1))]++;
+        }
+    }
+    for (size_t k = 0; k < s.refined.size(); ++k) {
+        const SkyTable::Refined& r = s.refined[k];
+        for (int i = 0; i < r.side * r.side; ++i) {
+            const Vec3 w = SkyTable::direction(r.column, r.row, s.width, s.height, (float(i % r.side) + .5f) / float(r.side),
+                                               (float(i / r.side) + .5f) / float(r.side));
+            const double expected = n * double(table.pdf(w)) * cellOf(s, r.row) / (r.side * r.side);
+            EXPECT_NEAR(seen[k][size_t(i)], expected, 6 * std::sqrt(expected) + 6) << r.side << ": " << i;
+        }
     }
 }
 

@@ -51,6 +51,15 @@ TEST_F(Server, HoverOfAMemberOfAStructure) {
     EXPECT_NE(t.find("point o"), std::string::npos) << t;
     EXPECT_NE(t.find("member of Ray"), std::string::npos) << t;
 }
+TEST_F(Server, HoverOfAVariableOfAStructure) {
+    const std::string t = hoverText(ask("hover", kStruct + "Ray many[3]; Ci = color ma|ny[1]->o; }\n"));
+    EXPECT_NE(t.find("Ray many[3]"), std::string::npos) << t;
+}
+TEST_F(Server, StructuresAreOfferedAsOneVariable) {
+    const auto l = labels(ask("completion", kStruct + "q->o = P; Ci = |; }\n"));
+    EXPECT_TRUE(has(l, "q"));
+    EXPECT_FALSE(has(l, "q->o"));
+}
 TEST_F(Server, HoverOfAStructure) {
     const std::string t = hoverText(
         ask("hover", "/* A ray. */\nstruct Ray { point o; vector d[2]; };\nsurface a() { R|ay q; q->o = P; Ci = 1; }\n"));

@@ -1,4 +1,4 @@
-// The language server: members, what stands beside errors, texts that are open, and streams that lose their place.
+// The language server: members, names near errors, texts that are open, and streams that lose their place.
 #include "lsp_fixture.h"
 
 namespace lsp_members_test {
@@ -90,7 +90,7 @@ TEST_F(Server, HandlesAreOfTypeShader) {
               std::string::npos);
 }
 
-// Names beside an error, in the statement with it, and in a shader whose structure is broken.
+// Names near an error, in the statement with it, and in a shader whose structure is broken.
 TEST_F(Server, HoverBesideAnError) {
     EXPECT_NE(hoverText(ask("hover", "surface a(float rough = 1;) {\n    float q = ro|ugh;\n    Ci = ((;\n}\n"))
                   .find("uniform float rough"),

@@ -6,7 +6,7 @@
 
 namespace alpenglow::rsl::front {
 
-/// A variable, or members of one. Elements of an array are not told apart.
+/// A variable, or members of one. Elements of an array are not distinguished.
 struct Path {
     const Symbol* symbol = nullptr;
     Place place;       ///< of the variable's name

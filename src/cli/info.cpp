@@ -104,6 +104,7 @@ int shader(const InfoArguments& a) {
     const std::vector<std::string> paths = searched(a);
     settings.allowExec = a.allowExec;
     settings.pluginPaths = paths;
+    settings.keepWritten = true;
     rsl::ShaderCompiler compiler(settings);
     auto shader = compiler.load(a.file, paths, diags);
     if (!shader) {

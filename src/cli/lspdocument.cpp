@@ -1,6 +1,7 @@
 #include "cli/lspdocument.h"
 #include "rsl/front/complete.h"
 #include "rsl/front/inspect.h"
+#include "rsl/front/structures.h"
 #include "rsl/front/visit.h"
 #include "rsl/nonlinear.h"
 #include <algorithm>
@@ -80,11 +81,11 @@ void Document::analyse(const rsl::FrontOptions& options) {
     Diagnostics d;
     rsl::FrontOptions o = options;
     o.lint = true;
-    auto program = rsl::inspectText(text_, path_, o, d);
+    std::shared_ptr<const rsl::Program> lowered = rsl::inspectText(text_, path_, o, d);
     // Of what compiles: where the path tracer would have to wait for light.
-    for (const auto& s : program->shaders) {
-        if (d.errors() > 0 || s->kind != rsl::ShaderKind::Surface || !isMainFile(*program, s->place)) continue;
-        for (Diagnostic& warning : rsl::nonlinearUses(*program, *s, {})) {
+    for (const auto& s : lowered->shaders) {
+        if (d.errors() > 0 || s->kind != rsl::ShaderKind::Surface || !isMainFile(*lowered, s->place)) continue;
+        for (Diagnostic& warning : rsl::nonlinearUses(*lowered, *s, {})) {
             const size_t n = size_t(std::max(warning.place.line, 1)) - 1;
             warning.sourceLine = warning.place.file == path_ ? std::string(line(n)) : "";
             rsl::complete(warning);
@@ -93,8 +94,9 @@ void Document::analyse(const rsl::FrontOptions& options) {
     }
     diagnostics_ = d.all();
     // While a shader is being typed there are moments in which nothing can be read of it: the last reading serves then.
+    const auto program = lowered->written ? lowered->written : lowered;
     const bool empty = program->shaders.empty() && program->functions.empty();
-    if (!empty || !program_ || diagnostics_.empty()) program_ = std::move(program);
+    if (!empty || !program_ || diagnostics_.empty()) program_ = program;
 }
 
 std::string normalPath(const std::string& path) {
@@ -401,8 +403,10 @@ std::vector<const rsl::Function*> Document::functions(const std::string& name) c
 
 namespace {
 
-/// The type as it is written: handles are of type shader.
-std::string typeOf(const rsl::Symbol& s) { return shadeops::toString(s.type.element()); }
+/// "float", "S": the type of an element, as it is written. Handles are of type shader.
+std::string typeOf(const rsl::Symbol& s, const rsl::Program& program) {
+    return rsl::front::Structures(program.structs).text(s.type.element());
+}
 
 std::string brackets(const rsl::Symbol& s) {
     if (s.type.array < 0 || s.open || s.resizable) return "[]";
@@ -411,31 +415,20 @@ std::string brackets(const rsl::Symbol& s) {
 
 } // namespace
 
-std::string declarationOf(const rsl::Symbol& s) {
+std::string declarationOf(const rsl::Symbol& s, const rsl::Program& program) {
     std::string t = s.output ? "output " : "";
     if (s.isConstant) t += "constant ";
     else if (s.storage != rsl::Storage::Unspecified) t += s.storage == rsl::Storage::Uniform ? "uniform " : "varying ";
-    return t + typeOf(s) + " " + s.name + brackets(s);
+    return t + typeOf(s, program) + " " + s.name + brackets(s);
 }
 
 std::string signatureOf(const rsl::Function& f, const rsl::Program& program) {
-    std::string result = shadeops::toString(f.result), list;
-    for (size_t i = 0; i < f.parameters.size();) {
-        const rsl::Symbol& p = *f.parameters[i];
-        const bool whole = p.whole.structure >= 0; // the first of the members that stand for a structure
-        i += size_t(std::max(p.whole.members, 1));
-        if (p.name.starts_with("(result)")) result = rsl::toString(p.whole, program);
-        if (p.whole.self) continue;
-        list += (list.empty() ? "" : "; ") + std::string(p.output ? "output " : "");
-        if (whole) {
-            const std::string type = rsl::toString(p.whole, program);
-            const size_t bracket = std::min(type.find('['), type.size());
-            list += type.substr(0, bracket) + " " + p.name.substr(0, p.name.find("->")) + type.substr(bracket);
-        } else {
-            list += typeOf(p) + " " + p.name + brackets(p);
-        }
-    }
-    return result + " " + f.name + "(" + list + ")";
+    std::string list;
+    for (const rsl::Symbol* p : f.parameters)
+        if (p->name != "this") // what a method is called for
+            list += (list.empty() ? "" : "; ") + std::string(p->output ? "output " : "") + typeOf(*p, program) + " " + p->name +
+                    brackets(*p);
+    return rsl::front::Structures(program.structs).text(f.result) + " " + f.name + "(" + list + ")";
 }
 
 } // namespace alpenglow::cli

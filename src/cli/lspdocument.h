@@ -108,7 +108,8 @@ public:
     std::vector<Member> members(const Receiver&, size_t position) const;
     /// The structure of this name; null when there is none.
     const rsl::StructType* structure(const std::string& name) const;
-    const rsl::StructType* structureOf(const std::string& name, const rsl::StructVariable*) const;
+    /// The structure that the variable, or `chain`, members of it such as "->a->b", is; null if it is none.
+    const rsl::StructType* structureOf(const rsl::Symbol&, const std::string& chain) const;
     /// The shader or function of this text in which the position is; both null outside.
     struct Around {
         const rsl::Shader* shader = nullptr;
@@ -132,7 +133,7 @@ private:
     void analyseScene(); // lsprib.cpp
     std::vector<size_t> starts_;
     bool stale_ = true;
-    std::unique_ptr<rsl::Program> program_;
+    std::shared_ptr<const rsl::Program> program_; ///< as written (rsl::asWritten())
     std::vector<Diagnostic> diagnostics_;
 };
 
@@ -140,7 +141,7 @@ private:
 std::string normalPath(const std::string&);
 /// "float f(float a; output S b[])", with the names; structures as the program declares them.
 std::string signatureOf(const rsl::Function&, const rsl::Program&);
-/// "output varying color x".
-std::string declarationOf(const rsl::Symbol&);
+/// "output varying color x", "S s[3]".
+std::string declarationOf(const rsl::Symbol&, const rsl::Program&);
 
 } // namespace alpenglow::cli

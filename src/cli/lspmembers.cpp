@@ -92,16 +92,14 @@ const rsl::StructType* Document::structure(const std::string& name) const {
     return nullptr;
 }
 
-/// The structure that `name`, a variable or a chain of members of one, is; null if it is none.
-const rsl::StructType* Document::structureOf(const std::string& name, const rsl::StructVariable* variable) const {
+const rsl::StructType* Document::structureOf(const rsl::Symbol& variable, const std::string& chain) const {
     const auto numbered = [&](int n) {
         return n >= 0 && size_t(n) < program_->structs.size() ? &program_->structs[size_t(n)] : nullptr;
     };
-    if (!variable) return nullptr;
-    const rsl::StructType* s = numbered(variable->structure);
-    for (size_t at = variable->name.size(); s && at < name.size();) {
-        const size_t begin = at + 2, end = std::min(name.find("->", begin), name.size());
-        const auto m = std::ranges::find(s->members, name.substr(begin, end - begin), &rsl::StructMember::name);
+    const rsl::StructType* s = numbered(variable.type.structure);
+    for (size_t at = 0; s && at < chain.size();) {
+        const size_t begin = at + 2, end = std::min(chain.find("->", begin), chain.size());
+        const auto m = std::ranges::find(s->members, chain.substr(begin, end - begin), &rsl::StructMember::name);
         s = m == s->members.end() ? nullptr : numbered(m->type.structure);
         at = end;
     }
@@ -120,13 +118,13 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
             if (everything || s.publics.count(f->name)) add({f->name, signatureOf(*f, *program_), s.name, f->place, true});
         for (const auto& v : s.symbols) {
             const bool parameter = v->origin == rsl::Symbol::Origin::ShaderParameter;
-            if (v->origin == rsl::Symbol::Origin::Global || v->name.find("->") != std::string::npos) continue;
-            if (parameter || s.publics.count(v->name)) add({v->name, declarationOf(*v), s.name, v->place, false});
+            if (v->origin == rsl::Symbol::Origin::Global) continue;
+            if (parameter || s.publics.count(v->name)) add({v->name, declarationOf(*v, *program_), s.name, v->place, false});
         }
         if (!everything || !s.body) return;
         for (const auto& b : s.body->body)
             for (const auto& d : b->declarators)
-                if (d.symbol) add({d.symbol->name, declarationOf(*d.symbol), s.name, d.symbol->place, false});
+                if (d.symbol) add({d.symbol->name, declarationOf(*d.symbol, *program_), s.name, d.symbol->place, false});
     };
     const Around a = around(position);
     if (r.name == "this") {
@@ -134,22 +132,14 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
             if (s->object && (a.shader ? s->name == a.shader->name : isHere(s->place))) ofClass(*s, true);
         return list;
     }
-    // Structures are one variable for each of their members.
-    const std::string head = r.name + "->";
+    const size_t variableEnd = std::min(r.name.find("->"), r.name.size());
+    const std::string variable = r.name.substr(0, variableEnd);
     bool handle = false;
-    const rsl::StructVariable* variable = nullptr;
+    const rsl::StructType* type = nullptr;
     const auto look = [&](const std::vector<std::unique_ptr<rsl::Symbol>>& symbols) {
         for (const auto& s : symbols) {
             handle |= s->type.base == shadeops::Base::Shader && s->name == r.name;
-            if (s->name.compare(0, head.size(), head) != 0) continue;
-            if (!variable) variable = s->of.get();
-            const std::string rest = s->name.substr(head.size());
-            const size_t deeper = rest.find("->");
-            rsl::Symbol member = *s;
-            member.name = rest;
-            add({rest.substr(0, deeper),
-                 deeper == std::string::npos ? declarationOf(member) : "structure " + rest.substr(0, deeper), r.name, s->place,
-                 false});
+            if (!type && s->name == variable) type = structureOf(*s, r.name.substr(variableEnd));
         }
     };
     if (a.function) look(a.function->symbols);
@@ -159,10 +149,10 @@ std::vector<Document::Member> Document::members(const Receiver& r, size_t positi
         for (const auto& f : program_->functions) look(f->symbols);
     }
     // As the structure declares them, with its methods.
-    if (const rsl::StructType* s = structureOf(r.name, variable)) {
-        list.clear(), seen.clear();
-        for (const auto& m : rsl::summary(*s, *program_).members) add({m.name, m.type + " " + m.name, s->name, m.place, false});
-        for (const auto& m : s->methods) add({m.name, m.name + "()", s->name, m.place, true});
+    if (type) {
+        for (const auto& m : rsl::summary(*type, *program_).members)
+            add({m.name, m.type + " " + m.name, type->name, m.place, false});
+        for (const auto& m : type->methods) add({m.name, m.name + "()", type->name, m.place, true});
     }
     // Which shader stands behind a handle, a scene decides: the classes of this text are offered.
     if (handle && r.arrow)

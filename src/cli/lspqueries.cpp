@@ -42,23 +42,23 @@ std::string globalText(const rsl::GlobalVariable& g) {
     return std::string(g.uniform ? "uniform " : "varying ") + shadeops::toString(g.type) + " " + g.name;
 }
 
-std::string parameterText(const rsl::ShaderParameter& p) {
-    return declarationOf(*p.symbol) + (p.defaultText.empty() ? "" : " = " + p.defaultText);
+std::string parameterText(const rsl::ShaderParameter& p, const rsl::Program& program) {
+    return declarationOf(*p.symbol, program) + (p.defaultText.empty() ? "" : " = " + p.defaultText);
 }
 
-std::string shaderText(const rsl::Shader& s) {
+std::string shaderText(const rsl::Shader& s, const rsl::Program& program) {
     std::string t = std::string(toString(s.kind)) + " " + s.name + "(";
-    for (size_t i = 0; i < s.parameters.size(); ++i) t += (i ? ";\n    " : "\n    ") + parameterText(s.parameters[i]);
+    for (size_t i = 0; i < s.parameters.size(); ++i) t += (i ? ";\n    " : "\n    ") + parameterText(s.parameters[i], program);
     return t + ")";
 }
 
-/// A parameter of a shader with its default, any other variable by its declaration.
+/// A parameter of a shader with its default, any other variable by its declaration. It is one of the document's program.
 std::string variableText(const Document& d, const rsl::Symbol& v) {
-    if (d.program() && v.origin == rsl::Symbol::Origin::ShaderParameter)
+    if (v.origin == rsl::Symbol::Origin::ShaderParameter)
         for (const auto& s : d.program()->shaders)
             for (const auto& p : s->parameters)
-                if (p.symbol == &v) return parameterText(p);
-    return declarationOf(v);
+                if (p.symbol == &v) return parameterText(p, *d.program());
+    return declarationOf(v, *d.program());
 }
 
 /// What stands here: as the compiler read it, or by its name where it read nothing.
@@ -160,7 +160,7 @@ Json LanguageServer::completion(const Json& params) {
         if (s.origin == rsl::Symbol::Origin::Local && d->isHere(s.place) &&
             d->offset(size_t(s.place.line) - 1, size_t(std::max(1, s.place.column)) - 1) >= begin)
             return;
-        offer(s.name, kVariable, declarationOf(s));
+        offer(s.name, kVariable, declarationOf(s, *d->program()));
     };
     if (a.function)
         for (const auto& s : a.function->symbols) variable(*s);
@@ -237,7 +237,7 @@ Json LanguageServer::hover(const Json& params) {
             else if (use.symbol->origin == rsl::Symbol::Origin::FunctionParameter) text += "\nparameter of the function\n";
         }
     } else if (use.shader) {
-        text = fenced(shaderText(*use.shader));
+        text = fenced(shaderText(*use.shader, *d->program()));
         const std::string comment = Document::commentAbove(d->text(), d->lineOf(word->first));
         if (!comment.empty()) text += "\n" + comment + "\n";
     } else if (use.function) {
@@ -325,7 +325,8 @@ Json LanguageServer::symbols(const Json& params) {
         Json children = Json::array();
         for (const auto& q : s->parameters)
             if (d->isHere(q.symbol->place))
-                children.push_back(symbol(q.symbol->name, kProperty2, declarationOf(*q.symbol), q.symbol->place, false));
+                children.push_back(
+                    symbol(q.symbol->name, kProperty2, declarationOf(*q.symbol, *d->program()), q.symbol->place, false));
         if (!children.empty()) j["children"] = std::move(children);
         list.push_back(std::move(j));
     }

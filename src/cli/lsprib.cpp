@@ -112,11 +112,12 @@ std::vector<std::pair<std::string, std::string>> parametersOf(const std::string&
     Diagnostics quiet;
     rsl::FrontOptions o = options;
     o.includePaths.insert(o.includePaths.begin(), fs::path(*file).parent_path().string());
-    const auto program = rsl::inspectText(*text, *file, o, quiet);
+    const auto program = rsl::inspectText(*text, *file, o, quiet); // lowered: a scene gives members of structures one by one
     for (const auto& s : program->shaders) {
         if (s->name != shader || !list.empty()) continue;
         for (const auto& p : s->parameters)
-            list.emplace_back(p.symbol->name, declarationOf(*p.symbol) + (p.defaultText.empty() ? "" : " = " + p.defaultText));
+            list.emplace_back(p.symbol->name,
+                              declarationOf(*p.symbol, *program) + (p.defaultText.empty() ? "" : " = " + p.defaultText));
     }
     return list;
 }

@@ -2,6 +2,7 @@
 #include "cli/lspdocument.h"
 #include "rsl/evaluate.h"
 #include "rsl/front/protocol.h"
+#include "rsl/front/visit.h"
 #include "rsl/ir/build.h"
 #include "rsl/passes/optimize.h"
 #include <algorithm>
@@ -216,6 +217,8 @@ std::string defaultText(const ParameterDescription& p) {
     return " = " + (d.value.numbers.empty() && d.value.strings.empty() ? "{}" : valueText(d.value));
 }
 
+std::tuple<int, int, int> positionOf(const rsl::Place& p) { return {p.file, p.line, p.column}; }
+
 } // namespace
 
 ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<const rsl::CompiledShader>& shader,
@@ -256,6 +259,10 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
                 }
         d.parameters.push_back(std::move(p));
     }
+    std::map<std::tuple<int, int, int>, std::string> signatures; // of methods, as they are written
+    rsl::front::everyFunction(rsl::asWritten(program), [&](const rsl::Function& f) {
+        signatures.emplace(positionOf(f.place), signatureOf(f, rsl::asWritten(program)));
+    });
     std::set<std::tuple<int, int, int>> methods;
     std::set<std::string> members;
     for (const auto& other : shader->program().shaders) {
@@ -263,8 +270,8 @@ ShaderDescription describe(rsl::ShaderCompiler& compiler, const std::shared_ptr<
         const auto variant = other.get() == &s ? shader : rsl::ShaderCompiler::variant(shader, other->kind);
         if (variant) d.kinds.push_back(describeKind(compiler, *variant, diagnostics));
         for (const auto& f : other->nested)
-            if (!added(f->place) && methods.insert({f->place.file, f->place.line, f->place.column}).second) {
-                std::string text = signatureOf(*f, program), name = f->name;
+            if (!added(f->place) && methods.insert(positionOf(f->place)).second) {
+                std::string text = signatures[positionOf(f->place)], name = f->name;
                 if (name == rsl::kReplacedLight) {
                     text.replace(text.find(name), name.size(), "light");
                     name = "light";

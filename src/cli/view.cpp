@@ -60,6 +60,7 @@ nlohmann::json aboutShader(const std::string& name, const std::vector<std::strin
     Diagnostics quiet;
     rsl::ShaderCompiler::Settings settings;
     settings.dialect = dialect;
+    settings.keepWritten = true;
     rsl::ShaderCompiler compiler(settings);
     const auto shader = compiler.load(name, folders, quiet);
     return shader ? nlohmann::json(descriptionJson(describe(compiler, shader, quiet))) : nlohmann::json();

@@ -30,7 +30,7 @@ struct LimitSurface::Topology {
 
 namespace {
 
-/// Tells which of the patterns that faces share a surface got.
+/// Which of the patterns that faces share a surface got.
 class Cache final : public Osd::Bfr::SurfaceFactoryCache {
 public:
     mutable const void* last = nullptr;

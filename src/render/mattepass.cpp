@@ -148,7 +148,7 @@ void MatteLoop::finish(const PixelShares& p, size_t pixel) {
         float* to = m.pairs.data() + pixel * size_t(2 * m.ranks);
         for (size_t k = 0; k < std::min(ranked.size(), size_t(m.ranks)); ++k, to += 2) {
             to[0] = std::bit_cast<float>(ranked[k].second);
-            to[1] = float(std::min(ranked[k].first, 1.0)); // negative lobes beside it may raise it
+            to[1] = float(std::min(ranked[k].first, 1.0)); // negative lobes of other samples may raise it
         }
     }
 }

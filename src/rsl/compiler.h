@@ -73,6 +73,7 @@ public:
         std::string dialect;                  ///< whose macros are predefined: FrontOptions::dialect
         bool rispecSpecular = false;          ///< FrontOptions::rispecSpecular
         bool lint = false;                    ///< warnings for authors of shaders (front/lint.h)
+        bool keepWritten = false;             ///< FrontOptions::keepWritten
         bool allowExec = false;               ///< `plugin "name"` loads code (rsl/plugins.h); else it is an error that says so
         std::vector<std::string> pluginPaths; ///< where plug-ins are searched, after the folder of the shader
         std::shared_ptr<ReadLog> reads;       ///< gets every source that is read or missed; may be null

@@ -30,6 +30,7 @@ struct ShaderCompiler::State {
         o.dialect = settings.dialect;
         o.rispecSpecular = settings.rispecSpecular;
         o.lint = settings.lint;
+        o.keepWritten = settings.keepWritten;
         if (settings.allowExec)
             o.plugin = [this](const std::string& name, const std::string& folder, Raised& why, std::string& hint) {
                 std::vector<std::string> folders{folder};

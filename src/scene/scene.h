@@ -46,9 +46,9 @@ struct Options {
     ShaderRef imager;
     AttributesRef attributes; ///< those at WorldBegin: what the imager sees. Null where no stream was read
     Quantize quantizeRgba{255, 0, 255, 0.5f, false}, quantizeZ{0, 0, 0, 0, false};
-    std::vector<Display> displays;                         ///< empty: ri.pic
-    std::map<std::string, Display> mattes;                 ///< of SampleFilter "PxrCryptomatte", by handle: beside the displays
-    std::map<std::string, Param> displayChannels;          ///< by name: the declaration, no values
+    std::vector<Display> displays;                ///< empty: ri.pic
+    std::map<std::string, Display> mattes;        ///< of SampleFilter "PxrCryptomatte", by handle: in addition to the displays
+    std::map<std::string, Param> displayChannels; ///< by name: the declaration, no values
     std::map<std::string, ParamList> displayChannelParams; ///< by name: "quantize", "filter" etc. of that channel
     std::string hider = "hidden";
     SourcePlace hiderPlace;

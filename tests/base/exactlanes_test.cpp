@@ -32,7 +32,7 @@ std::vector<double> numbers(double most) {
 template <class V> void compareAngles() {
     constexpr size_t kLanes = sizeof(V) / sizeof(double);
     const std::vector<double> all = numbers(0x1p1020);
-    for (size_t step : {size_t(0), size_t(1), size_t(7), size_t(12)}) // beside itself, and others
+    for (size_t step : {size_t(0), size_t(1), size_t(7), size_t(12)}) // with itself, and with others
         for (size_t i = 0; i + kLanes <= all.size(); i += kLanes) {
             V y, x;
             for (size_t k = 0; k < kLanes; ++k) y[k] = all[i + k], x[k] = all[(i + k + step) % all.size()];

@@ -169,7 +169,7 @@ TEST_F(DeepShadows, HairTakesWhatItCovers) {
 
 // A point light's six faces, one map each: shadow() of the face that looks there is what a ray finds.
 TEST_F(DeepShadows, SixFacesOfAPointLight) {
-    // The light stands at the origin in a ring of balls, one before each face and a bit beside its middle.
+    // The light stands at the origin in a ring of balls, one before each face, a bit off its middle.
     const char* turn[] = {"Rotate -90 0 1 0", "Rotate 90 0 1 0", "Rotate 90 1 0 0",
                           "Rotate -90 1 0 0", "Rotate 0 1 0 0",  "Rotate 180 0 1 0"};
     const char* axis[] = {"2 .3 0", "-2 .3 0", ".3 2 0", ".3 -2 0", "0 .3 2", "0 .3 -2"};

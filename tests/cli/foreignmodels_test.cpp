@@ -1,4 +1,4 @@
-// alpenglow model.glb and alpenglow from: what small models look like, beside closed forms.
+// alpenglow model.glb and alpenglow from: what small models look like, compared with closed forms.
 #include "../models/gltfwriter.h"
 #include "base/installation.h"
 #include "command_folder.h"

@@ -161,7 +161,7 @@ TEST_F(Info, ScenesAndModels) {
     EXPECT_EQ(model["to"], Json({2., 3., 0.}));
 }
 
-// What commands find is one object, with their messages beside it.
+// What commands find is one object, which has their messages, too.
 TEST_F(Info, JsonHoldsDiagnostics) {
     write("s.rib", "Format 4 4 1\nDisplay \"a.exr\" \"openexr\" \"rgba\"\nWorldBegin\nSurface \"constant\"\n"
                    "Polygon \"P\" [-9 -9 1 -9 9 1 9 9 1 9 -9 1]\nWorldEnd\n");

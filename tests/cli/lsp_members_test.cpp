@@ -1,4 +1,4 @@
-// The language server: members, what stands beside errors, texts that are open, and streams that lose their place.
+// The language server: members, names near errors, texts that are open, and streams that lose their place.
 #include "lsp_fixture.h"
 
 namespace lsp_members_test {
@@ -51,6 +51,15 @@ TEST_F(Server, HoverOfAMemberOfAStructure) {
     EXPECT_NE(t.find("point o"), std::string::npos) << t;
     EXPECT_NE(t.find("member of Ray"), std::string::npos) << t;
 }
+TEST_F(Server, HoverOfAVariableOfAStructure) {
+    const std::string t = hoverText(ask("hover", kStruct + "Ray many[3]; Ci = color ma|ny[1]->o; }\n"));
+    EXPECT_NE(t.find("Ray many[3]"), std::string::npos) << t;
+}
+TEST_F(Server, StructuresAreOfferedAsOneVariable) {
+    const auto l = labels(ask("completion", kStruct + "q->o = P; Ci = |; }\n"));
+    EXPECT_TRUE(has(l, "q"));
+    EXPECT_FALSE(has(l, "q->o"));
+}
 TEST_F(Server, HoverOfAStructure) {
     const std::string t = hoverText(
         ask("hover", "/* A ray. */\nstruct Ray { point o; vector d[2]; };\nsurface a() { R|ay q; q->o = P; Ci = 1; }\n"));
@@ -81,7 +90,7 @@ TEST_F(Server, HandlesAreOfTypeShader) {
               std::string::npos);
 }
 
-// Names beside an error, in the statement with it, and in a shader whose structure is broken.
+// Names near an error, in the statement with it, and in a shader whose structure is broken.
 TEST_F(Server, HoverBesideAnError) {
     EXPECT_NE(hoverText(ask("hover", "surface a(float rough = 1;) {\n    float q = ro|ugh;\n    Ci = ((;\n}\n"))
                   .find("uniform float rough"),

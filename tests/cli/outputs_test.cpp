@@ -40,7 +40,7 @@ protected:
 
 } // namespace
 
-// -o is the picture; what else the scene asks for is written beside it.
+// -o is the picture; what else the scene asks for is written to the same folder.
 TEST_F(Outputs, OneNamedPictureLeavesOtherOutputs) {
     scene("s.rib", "Display \"f.exr\" \"openexr\" \"rgba\"\nDisplay \"+n.exr\" \"openexr\" \"N\"\n"
                    "Display \"+b.png\" \"png\" \"rgb\"\nHider \"path\"");
@@ -232,7 +232,7 @@ TEST_F(Outputs, Checkpoints) {
     EXPECT_TRUE(read("c.ckp") == four);
 }
 
-// merge takes the part file beside a picture for that picture's.
+// merge takes the part file next to a picture for that picture's.
 TEST_F(Outputs, PartsOfOlderPicturesGo) {
     scene("s.rib", "");
     const std::string how = "--hider path --seed 7 ";

@@ -402,7 +402,7 @@ TEST_F(Tools, ManualIsUpToDate) {
     EXPECT_TRUE(page == run("info --shadeops --markdown")) << "make it again: cmake --build ... --target shadeops_manual";
 }
 
-// A file of several shaders: each is compiled, a fault in one is its own, and info tells about all of them, beginning with the
+// A file of several shaders: each is compiled, a fault in one is its own, and info describes all of them, beginning with the
 // one that has the file's name.
 TEST_F(Tools, AFileOfSeveralShaders) {
     write("wood.sl", "float ring(float x) { return mod(x, 1); }\nlight lamp(float k = 2;) { solar() { Cl = k; } }\nsurface "

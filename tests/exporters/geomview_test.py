@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""geomview_test.py PROGRAM OUT [--now]: shapes that ship with Geomview by its rib-snapshot, drawn under hidden, beside
+"""geomview_test.py PROGRAM OUT [--now]: shapes that ship with Geomview by its rib-snapshot, drawn under hidden, compared with
 Geomview's own pictures.
 Status 77 where geomview, Xvfb or python3-numpy is not installed.
 

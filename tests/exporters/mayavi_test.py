@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""mayavi_test.py PROGRAM OUT [--now]: three scenes of mayavi by its save_rib, drawn under hidden, beside mayavi's own
+"""mayavi_test.py PROGRAM OUT [--now]: three scenes of mayavi by its save_rib, drawn under hidden, compared with mayavi's own
 pictures. Status 77 where mayavi2
 or Xvfb is not installed.
 

@@ -1,4 +1,4 @@
-"""Pictures as NumPy arrays: reading, comparing by blocks, setting beside each other."""
+"""Pictures as NumPy arrays: reading, comparing by blocks, joining side by side."""
 import os
 import struct
 import sys
@@ -50,7 +50,7 @@ def compared(a, b, n=8):
 
 
 def png(path, beside):
-    """Pictures of light beside each other, in sRGB."""
+    """Pictures of light side by side, in sRGB."""
     v = np.clip(np.concatenate(beside, 1), 0, 1)
     u = (np.where(v <= 0.0031308, 12.92 * v, 1.055 * np.power(np.maximum(v, 1e-9), 1 / 2.4) - 0.055) * 255 + 0.5).astype(
         np.uint8

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""vtk_test.py PROGRAM OUT [--now]: six scenes of VTK by its vtkRIBExporter, drawn here under hidden and under path, beside
+"""vtk_test.py PROGRAM OUT [--now]: six scenes of VTK by its vtkRIBExporter, drawn here under hidden and under path, compared with
 VTK's own pictures.
 Status 77 where python3-vtk9 or Xvfb is not installed.
 

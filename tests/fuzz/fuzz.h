@@ -53,7 +53,7 @@ struct Target {
     std::string extension;                             ///< of a saved input
     int cost = 1;                                      ///< the short check makes so many times fewer inputs of it
     bool loops = false;                                ///< an input may ask for endless work, so that an interrupt is a fair end
-    std::function<Seeds()> seeds;                      ///< beside the corpus of its name
+    std::function<Seeds()> seeds;                      ///< in addition to the corpus of its name
     std::function<Bytes(Random&, const Seeds&)> input; ///< a new input; there is at least one seed
     std::function<Outcome(const Bytes&)> run;          ///< in a process and a folder of its own
     bool caches = false; ///< compiled kernels are kept for the next inputs: where compiling is not what is tested

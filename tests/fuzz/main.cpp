@@ -248,7 +248,7 @@ int main(int argc, char** argv) {
     CLI::App app("Damaged and generated input for everything that reads a stranger's bytes", "fuzz_alpenglow");
     app.add_option("--target", a.targets, "Only these targets");
     app.add_option("--seconds", a.seconds, "Go on for about so long, shared by the targets");
-    app.add_option("--runs", a.runs, "Inputs a target, beside its seeds");
+    app.add_option("--runs", a.runs, "Inputs a target, in addition to its seeds");
     app.add_option("--seed", a.seed, "Of all random numbers: the same seed makes the same inputs");
     app.add_option("--only", a.only, "Only the input of this number");
     app.add_option("--input", a.inputs, "Run saved inputs of one target, and show what is said");

@@ -29,7 +29,7 @@ namespace {
 
 constexpr size_t kBatch = 400; ///< inputs of one child: what it leaks does not add up to a finding
 
-/// What the child tells while it runs.
+/// What the child reports while it runs.
 struct Shared {
     std::atomic<size_t> current{0}, done{0}; ///< index in the batch of the running input; how many are done
     std::atomic<double> started{0};          ///< processor seconds of the child when the running input began
@@ -148,7 +148,7 @@ void becomeWorker(const fs::path& logs, const fs::path& folder, const std::strin
     _exit(0);
 }
 
-/// What tells defects apart: the places in the trace, without addresses of data; a sanitizer's own summary.
+/// What distinguishes defects: the places in the trace, without addresses of data; a sanitizer's own summary.
 std::string signatureOf(const std::string& log, int signal) {
     std::string s = signal ? "signal " + std::to_string(signal) : "exit";
     if (const size_t at = log.find("SUMMARY: "); at != std::string::npos)
@@ -168,7 +168,7 @@ struct Ending {
 };
 
 /// The running input of a child, as the parent sees it from time to time. Only processor time tells work from a machine that is
-/// busy with other things; the clock on the wall tells nothing but that a child has not worked at all.
+/// busy with other things; the clock on the wall shows only that a child has not worked at all.
 class Watched {
 public:
     Watched(pid_t pid, const SharedMemory& shared, const Limits& limits) : pid_(pid), shared_(shared), limits_(limits) {}

@@ -122,7 +122,7 @@ inline double sumOf(const Traced& t) {
     return sum;
 }
 /// Lanes of kernels for requests in rows, and for those that are read one by one: 16 and 4, or 4 and 16. They take turns by room,
-/// so that one comparison tells of both; nightly a third trace tells of each alone.
+/// so that one comparison tests both; nightly a third trace tests each alone.
 struct Widths {
     explicit Widths(const std::string& rib) : rows(rib.size() % 2 ? 4 : 16), single(rib.size() % 2 ? 16 : 4) {}
     int rows, single;

@@ -1,4 +1,4 @@
-// Pictures of depth alone beside the same depths in a picture of colours.
+// Pictures of depth alone compared with the same depths in a picture of colours.
 #include "display/imageio.h"
 #include "integrator/harness.h"
 #include "render/renderer.h"

@@ -72,10 +72,10 @@ TEST(IndirectApart, ASky) {
         const Settings s = traced(Hider::Path, suspend);
         expectMean(of(shows(".5 * (diffuse(n) + indirectdiffuse(P, up, 16))"), sky, s, samples(5000)), .5, .02, "diffuse");
         expectMean(of(shows(".5 * (sum + indirectdiffuse(P, up, 16))", kLoop), sky, s, samples(5000)), .5, .02, "loop");
-        // Alone it brings all, as highlights beside it do not ask for what it finds.
+        // Alone it brings all, as highlights of the same surface do not ask for what it finds.
         expectMean(of(shows(".5 * indirectdiffuse(P, up, 16)"), sky, s, samples(5000)), .5, .02, "alone");
         expectMean(of(shows(".5 * indirectdiffuse(P, up, 16) + 0 * specular(n, up, .1)"), sky, s, samples(2000)), .5, .02,
-                   "beside a highlight");
+                   "together with a highlight");
     }
 }
 // A parameter that switches indirectdiffuse() off leaves diffuse() all light.
@@ -121,7 +121,7 @@ TEST(EnergyRule, LightsInFull) {
     Settings s = traced(Hider::Path);
     const std::string sky = "LightSource \"envlight\" 1 \"intensity\" 1\n";
     expectMean(of(surface, sky, s, 400), 2, 1e-5, "sky");
-    s.maxDepth = 0; // where the depth ends a path, too, and beside indirectdiffuse(), which then brings nothing
+    s.maxDepth = 0; // where the depth ends a path, too, and with an indirectdiffuse() that then brings nothing
     expectMean(of(surface, sky, s, 400), 2, 1e-5, "sky at the last vertex");
     expectMean(of(shows(".5 * (diffuse(n) + indirectdiffuse(P, up, 16))"), sky, s, 400), .5, 1e-5, "apart at the last vertex");
     s = traced(Hider::Path);
@@ -214,7 +214,7 @@ TEST(NegativeLights, TakeLightAway) {
     expectMean(of(shows("diffuse(n)"), many, traced(Hider::Path), samples(4000)), 15 * .2 - 5 * .4, .02, "many");
 }
 
-// n samples of a light beside n rays: of a lamp that a half-plane hides to one half, in the middle of its shadow's edge, n
+// n samples of a light and n rays: of a lamp that a half-plane hides to one half, in the middle of its shadow's edge, n
 // samples have an n-th of the variance at most, since each sees the lamp or does not.
 TEST(LightSamples, AsManyAsRays) {
     const std::string half =

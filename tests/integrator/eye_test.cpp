@@ -49,7 +49,7 @@ TEST(Eye, IncidentVectorsOfCameras) {
         expectColor(middle(perspective, glass + wall(8, eyes + "0")), {2, 0, 4}, std::string("behind glass ") + near, 1e-4f);
         expectColor(middle(flat, glass + wall(8, eyes + "0")), {0, 0, 4}, std::string("parallel, behind glass ") + near, 1e-4f);
     }
-    // The way that rayinfo() tells is that of I; a moving eye has its own.
+    // The direction that rayinfo() gives is that of I; a moving eye has its own.
     writeShader("way", "surface way() { float l = 0; point o = 0; rayinfo(\"length\", l); rayinfo(\"origin\", o); Oi = 1; Ci = "
                        "color(l, xcomp(o), zcomp(o)); }\n");
     expectColor(middle("Projection \"perspective\" \"fov\" 90\nClipping 2 100\n", wall(8, "Surface \"way\"")),

@@ -58,7 +58,7 @@ TEST(NoiseLaws, HalvesFrom64To256) {
     EXPECT_GT(a, 0);
     EXPECT_NEAR(b / a, .5, .025);
 }
-// efficiency = 1 / (noiseRSE^2 t) does not depend on the number of samples, t in processor time. Short runs beside each other,
+// efficiency = 1 / (noiseRSE^2 t) does not depend on the number of samples, t in processor time. Short runs side by side,
 // repeated, because other work on the machine slows both. Timed, so nightly only.
 TEST(NoiseLaws, EfficiencyIsConstant) {
     if (!nightly()) GTEST_SKIP() << "measures time: nightly";

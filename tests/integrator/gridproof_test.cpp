@@ -1,5 +1,5 @@
-// Micropolygons beside samples that are shaded one by one, which are the independent way: finer ones come to the same picture,
-// rates that make no sense are bounded, volumes are left to samples; and raytrace, where it asks for micropolygons.
+// Micropolygons compared with samples that are shaded one by one, which are the independent way: finer ones come to the same
+// picture, rates that make no sense are bounded, volumes are left to samples; and raytrace, where it asks for micropolygons.
 #include "display/imageio.h"
 #include "integrator/gridscene.h"
 #include "render/renderer.h"
@@ -45,7 +45,7 @@ bool same(const SampleResult& a, const SampleResult& b) {
     return a.color == b.color && a.opacity == b.opacity && a.z == b.z && a.zSecond == b.zSecond && a.aovs == b.aovs;
 }
 
-/// Kinds beside those of kShapes.
+/// Kinds in addition to those of kShapes.
 const std::vector<std::string> kOthers = {
     kSquare,
     "Translate 0 0 5\nParaboloid .8 0 .9 360\n",

@@ -54,7 +54,7 @@ TEST_P(LightDisplacement, WhatWasWritten) {
 INSTANTIATE_TEST_SUITE_P(Hiders, LightDisplacement, ::testing::Values(Hider::Hidden, Hider::Path),
                          [](const auto& i) { return i.param == Hider::Path ? "Path" : "Hidden"; });
 
-// A ball of radius 1/2 whose centre is 2 above the floor, of the radiance that the displacement of the floor tells: a sixteenth
+// A ball of radius 1/2 whose centre is 2 above the floor, of the radiance that the displacement of the floor outputs: a sixteenth
 // of it, whether it is sampled or met by a ray.
 TEST(LightDisplacementPath, EmittersThatAreMet) {
     writeShader("tells", "displacement tells(float k = 1; output varying float told = 0; output varying color tint = 0;) { told "

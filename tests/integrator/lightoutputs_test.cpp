@@ -1,5 +1,5 @@
-// Outputs that light reaches, displayed beside Ci: the beauty is what it is without them, to the bit, and they have all of their
-// light.
+// Outputs that light reaches, displayed together with Ci: the beauty is what it is without them, to the bit, and they have all of
+// their light.
 #include "integrator/box.h"
 #include "integrator/floorscene.h"
 #include <cstring>
@@ -122,7 +122,7 @@ TEST(LightOutputs, PartsOfCi) {
     }
 }
 
-/// A white floor under an even sky, whose shader tells outputs: means over n samples of one ray.
+/// A white floor under an even sky, whose shader writes outputs: means over n samples of one ray.
 std::vector<Moments> underASky(const std::string& surface, const std::vector<std::string>& outputs, Hider h, int n,
                                bool suspend = false, std::string* said = nullptr) {
     Settings set = withShaders(h);

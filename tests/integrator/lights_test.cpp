@@ -1,4 +1,5 @@
-// Which lights count where: through transparent surfaces, in mirrors, by category, by several samples, beside explicit emission.
+// Which lights count where: through transparent surfaces, in mirrors, by category, by several samples, together with explicit
+// emission.
 #include "integrator/harness.h"
 
 namespace lights_test {

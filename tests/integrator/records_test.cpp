@@ -20,7 +20,7 @@ const std::string kWall =
 double ofWall(double x, double h) { return (1 - x / std::sqrt(x * x + h * h)) / 2; }
 double slopeOfWall(double x, double h) { return -h * h / (2 * std::pow(x * x + h * h, 1.5)); }
 
-/// A record about +z of what `sees` tells of each direction: light, and how far away it comes from.
+/// A record about +z of what `sees` gives for each direction: light, and the distance that it comes from.
 LightRecord recordOf(int rings, int turns, const std::function<std::pair<double, double>(const Vec3d&)>& sees) {
     std::vector<Color> light;
     std::vector<float> way;

@@ -1,4 +1,4 @@
-// Lights of RIS beside their units (ris_test.cpp): how maps and days are turned, filters, profiles, links. Closed forms.
+// Lights of RIS except for their units (ris_test.cpp): how maps and days are turned, filters, profiles, links. Closed forms.
 #include "integrator/harness.h"
 #include "integrator/maps.h"
 

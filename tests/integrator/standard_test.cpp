@@ -1,5 +1,5 @@
-// The principled surface shaders/standard.sl and the materials of RIS that are made of the same layers: in white furnaces, beside
-// closed forms of point lights, and through clear glass.
+// The principled surface shaders/standard.sl and the materials of RIS that are made of the same layers: in white furnaces,
+// compared with closed forms of point lights, and through clear glass.
 #include "integrator/floorscene.h"
 
 namespace standard_test {

@@ -415,7 +415,7 @@ TEST_F(Subsurface, WhatEntersIsWhatShadersSay) {
 }
 
 // Light that the surface gathers where walks come out: as much comes back as of a constant that is the same. What no light would
-// bring by itself, the factors, tells that it's the shader's; what it takes of other surfaces comes with it.
+// bring by itself, the factors, shows that it's the shader's; what it takes of other surfaces comes with it.
 TEST_F(Subsurface, WhatEntersMayBeMadeOfLight) {
     const std::string tail = ", \"scattering\", .8, \"absorption\", .2, \"ior\", 1.3, \"scale\", 20); }\n";
     const std::string head = "normal n = normalize(N); Oi = 1; color e = 0;\n";

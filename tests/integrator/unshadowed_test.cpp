@@ -1,4 +1,4 @@
-// What trace() tells of area lights and of its map as if nothing else were there: also of mirror rays, and of rays that begin
+// What trace() finds of area lights and of its map as if nothing else were there: also of mirror rays, and of rays that begin
 // beside the surface. A floor under a disc of radius .8 at height 2 that shines, behind a card.
 #include "integrator/floorscene.h"
 #include "integrator/maps.h"

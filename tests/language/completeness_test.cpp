@@ -59,7 +59,7 @@ Calls ofSnippets() {
     return calls;
 }
 
-/// The texts of a C++ file: literals that stand beside each other are one.
+/// The texts of a C++ file: adjacent literals are one.
 std::vector<std::string> literals(const std::string& code) {
     std::vector<std::string> all;
     std::string text;

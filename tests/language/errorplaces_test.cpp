@@ -1,6 +1,6 @@
 // Erroneous programs and exactly what must be said about them: id, line and column of every message (errors/*.err). A file holds
 //   # remarks
-//   == lines NAME      each line that follows is a program of its own: the body of a shader (errors/lines.err tells its
+//   == lines NAME      each line that follows is a program of its own: the body of a shader (errors/lines.err has its
 //   variables)
 //   == file NAME       what follows is one program
 //   == lint NAME       one program, with the warnings of `compile -W`

@@ -1,4 +1,4 @@
-// docs/language.md tells the truth: every program on the page is compiled and run. In a program, "// error: id" or "// warning:
+// docs/language.md is right: every program on the page is compiled and run. In a program, "// error: id" or "// warning:
 // id" at the end of a line names the messages that must stand on it (several one after the other, ids of one kind may share the
 // word), and
 // "// gives NAME = NUMBERS" behind it what an output holds.

@@ -10,7 +10,7 @@
 namespace alpenglow::rsl::messageexamples_test {
 namespace {
 
-/// What is said about the example, as `Shown` tells it is found.
+/// The messages about the example, found in the way that `Shown` states.
 std::vector<Diagnostic> saidOf(const MessageKind& kind) {
     Diagnostics d;
     if (kind.shown == Shown::Compile || kind.shown == Shown::Warnings) {

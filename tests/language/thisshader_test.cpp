@@ -125,7 +125,7 @@ TEST(ThisShader, WhatItHasNotIsAnError) {
     EXPECT_NE(d.all().back().message.find("'thrice'"), std::string::npos);
 }
 
-/// The error stands at the call that closes the circle, the first time round, and tells the way.
+/// The error stands at the call that closes the circle, the first time round, and names the calls on the way.
 TEST(ThisShader, CirclesEndWhereTheyClose) {
     struct {
         const char *body, *file, *way;

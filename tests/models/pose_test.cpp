@@ -1,4 +1,4 @@
-// Models at a time, beside closed forms: keys, turns along the sphere, skins, morph targets.
+// Models at a time, compared with closed forms: keys, turns along the sphere, skins, morph targets.
 #include "models/check.h"
 #include "models/pose.h"
 #include <cmath>

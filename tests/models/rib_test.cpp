@@ -1,4 +1,4 @@
-// Models as RIB: cameras, lights, materials and parts as text, beside what the fields of glTF mean.
+// Models as RIB: cameras, lights, materials and parts as text, compared with what the fields of glTF mean.
 #include "models/check.h"
 #include "models/rib.h"
 #include "models/ribparts.h"

@@ -327,7 +327,7 @@ class Procedurals(InFolder):
         def leave(data, detail):
             ri.Color([0, 1, 0])
             ri.Translate(100, 0, 0)
-            ri.AttributeBegin()  # not closed: told, and closed
+            ri.AttributeBegin()  # not closed: reported, and closed
 
         def draw():
             ri.Color([0, 0, 1])

@@ -125,7 +125,7 @@ TEST(SignedFilters, AnEdgeIsTheIntegralOfTheFilter) {
         }
 }
 
-// The error that a pixel tells of itself is the one that pixels have.
+// The error that a pixel estimates for itself is the one that pixels have.
 TEST(SignedFilters, NoiseIsThatOfPixels) {
     for (const FilterKind k : {FilterKind::Mitchell, FilterKind::SeparableCatmullRom})
         for (const float t : {-0.9f, 0.0f, 0.7f}) {

@@ -53,7 +53,7 @@ std::string left(const std::string& archive, const std::string& bound = "[-1 1 -
     return "TransformBegin Translate -50 0 5 Procedural \"DelayedReadArchive\" [\"" + archive + "\"] " + bound + " TransformEnd ";
 }
 
-/// What tells primitives apart, in order; of procedurals whether they are made.
+/// What tells primitives apart, in order; of procedurals whether they are expanded.
 std::string summary(const scene::Frame& f, bool procedurals = true) {
     std::string s;
     for (const scene::PrimitiveRef& p : f.primitives) {

@@ -1,5 +1,5 @@
-// Binary requests that are read straight into calls (ri/direct.h) beside the general way, which a source of single bytes forces:
-// the same calls, places and messages, whatever the bytes are.
+// Binary requests that are read straight into calls (ri/direct.h) compared with the general way, which a source of single bytes
+// forces: the same calls, places and messages, whatever the bytes are.
 #include "calls.h"
 #include "ri/writer.h"
 #include <random>

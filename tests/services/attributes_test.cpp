@@ -280,7 +280,7 @@ TEST(Options, ByName) {
     for (const auto& r : rows) EXPECT_EQ(asked("option", r.type, r.name, "", r.shown, before), r.want) << r.name;
 }
 
-// A card one above the floor tells about the ray that comes from there, and about the camera's.
+// A card one above the floor shows what rayinfo() gives for the ray that comes from there, and for the camera's.
 TEST(RayInfo, EveryKeyword) {
     const struct {
         const char* what;

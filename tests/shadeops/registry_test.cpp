@@ -121,7 +121,7 @@ TEST(Registry, ParseSignature) {
 // Every function heading of the manual ("- type name ( ...") is here.
 TEST(Registry, CoversTheManual) {
     std::ifstream in(std::filesystem::path(ALPENGLOW_SOURCE_DIR) / "../shared/seeds/3delight-standard-functions.txt");
-    if (!in) GTEST_SKIP() << "the manual's list is not beside this checkout";
+    if (!in) GTEST_SKIP() << "the manual's list is not next to this checkout";
     const std::regex heading(
         R"(^- (uniform )?(type|float|color|point|vector|normal|matrix|string|void|shader)(\[\])? ([A-Za-z0-9_]+) ?\()");
     std::string line;

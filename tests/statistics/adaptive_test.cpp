@@ -222,7 +222,7 @@ TEST(Spread, CountsAndFiles) {
 
 // T9: means of many renders whose pixels differ in their numbers of samples. By rates that come from the pixel alone the middle
 // band would be at .76 (by a simulation apart from this program). What a forty-ninth part of its own noise would do is too little
-// to be seen here: APixelsOwnSamplesHaveNoSay tells.
+// to be seen here: APixelsOwnSamplesHaveNoSay tests it.
 TEST_F(Adaptive, EveryMeanIsUnbiased) {
     const Many& m = many();
     EXPECT_EQ(m.differ, m.renders);

@@ -155,7 +155,7 @@ TEST(Damage, TwoProcessesThatMakeOneMap) {
         waitpid(child, &status, 0);
         EXPECT_EQ(WEXITSTATUS(status), 0);
     }
-    EXPECT_EQ(s.files(), 3u); // and nothing is left beside it
+    EXPECT_EQ(s.files(), 3u); // and no other file is left
 }
 
 } // namespace damage_test

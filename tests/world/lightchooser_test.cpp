@@ -1,4 +1,4 @@
-// world/lightchooser.h: a light is chosen with exactly the probability that is given with it, and that pmf() tells.
+// world/lightchooser.h: a light is chosen with exactly the probability that is given with it, and that pmf() returns.
 #include "lanes/stages.h"
 #include "world/lightchooser.h"
 #include <algorithm>

@@ -240,7 +240,7 @@ class AlpenglowEngine(bpy.types.RenderEngine):
                 grows.close()
 
     def _tell(self, report, folder):
-        """What is not exported, each feature once, in Blender's reports, on the terminal and beside the RIB."""
+        """What is not exported, each feature once, in Blender's reports, on the terminal and next to the RIB."""
         with open(os.path.join(folder, "report.txt"), "w", encoding="utf-8") as f:
             for line in report.texts():
                 f.write(line + "\n")

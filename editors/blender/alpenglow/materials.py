@@ -1,4 +1,4 @@
-"""Materials: each is the text of a shader beside the RIB, or an RSL shader that the user names."""
+"""Materials: each is the text of a shader next to the RIB, or an RSL shader that the user names."""
 import os
 
 import numpy as np
@@ -13,7 +13,7 @@ DEFAULT = (
 
 
 class Images:
-    """Image files by image: those that lie in the blend file or in memory are written beside the RIB."""
+    """Image files by image: those that lie in the blend file or in memory are written next to the RIB."""
 
     def __init__(self, folder, report):
         self.folder, self.report, self.found = folder, report, {}

@@ -72,7 +72,7 @@ void leftOut(Interpreter& in, const Call& c) {
                      fmt::format("{} \"{}\" is left out: the picture is drawn without it", c.request->name, c.text(0)));
 }
 
-/// PxrCryptomatte writes a picture beside those of the displays.
+/// PxrCryptomatte writes a picture in addition to those of the displays.
 void sampleFilter(Interpreter& in, const Call& c) {
     if (c.text(0) != "PxrCryptomatte") return leftOut(in, c);
     in.isRis();

@@ -31,22 +31,6 @@ struct Function;
 using ExprPtr = std::unique_ptr<Expr>;
 using StmtPtr = std::unique_ptr<Stmt>;
 
-/// The first of the members that stand where one structure was written among the parameters of a function. For tools, which show
-/// what was written.
-struct Whole {
-    int structure = -1; ///< by its number in Program::structs; -1: no structure begins here
-    int members = 0;    ///< from here on
-    int array = 0;      ///< as Type::array
-    bool self = false;  ///< what a method is called for, or the result of a function: neither is an argument
-};
-
-/// A variable whose type is a structure. Behind the pass that takes structures apart each of its plain members is a Symbol.
-struct StructVariable {
-    std::string name;
-    int structure = -1; ///< by its number in Program::structs
-    int array = 0;      ///< as Type::array
-};
-
 /// A variable of any origin. Address identity: two uses of one variable share the Symbol.
 struct Symbol {
     enum class Origin : uint8_t { Local, ShaderParameter, FunctionParameter, Global };
@@ -62,8 +46,6 @@ struct Symbol {
     bool resizable = false; ///< `float x[]`, local or a parameter of a function: its length may change
     bool isExtern = false;  ///< only between parser and checker, which puts the outer variable in its place
     Place place;
-    Whole whole{};                              ///< of a parameter of a function
-    std::shared_ptr<const StructVariable> of{}; ///< the variable of which this is a member; its members share it
 };
 
 enum class ExprKind : uint8_t {
@@ -133,7 +115,6 @@ struct Expr {
     bool varying = true; ///< by declaration and operands; the IR infers more
     Place place;
     bool handle = false; ///< String: a handle, no text: null (empty), or what RSL has names for, "(this)", "(light)"
-    bool part = false;   ///< Variable: one of several that stand where the shader names a structure as a whole
     int height = 1;      ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
     double number = 0;
     std::string text; ///< String; callee name before binding
@@ -259,10 +240,9 @@ struct Program {
     std::string preprocessed;                           ///< text after includes and macros: part of the cache key
     std::vector<std::string> dependencies;              ///< every file read
     std::vector<std::shared_ptr<const Plugin>> plugins; ///< in the order of the text; calls refer to these
+    /// FrontOptions::keepWritten: the program from before lowerStructs(), for tools; null where there are no structures.
+    std::shared_ptr<const Program> written;
 };
-
-/// A structure as the shader names it, with the brackets of an array of them: "S", "S[3]", "S[]".
-std::string toString(const Whole&, const Program&);
 
 struct FrontOptions {
     std::vector<std::string> includePaths;
@@ -271,8 +251,9 @@ struct FrontOptions {
     std::string dialect;
     bool rispecSpecular = false; ///< specular() and specularbrdf() have the exponent that RISpec prints (shadeops/specular.h)
     std::vector<std::pair<std::string, std::string>> defines;
-    PluginFinder plugin; ///< empty: code from outside is not run, and `plugin "name"` is an error that says so
-    bool lint = false;   ///< warn about unused, uninitialised and the like, too (lint.h)
+    PluginFinder plugin;      ///< empty: code from outside is not run, and `plugin "name"` is an error that says so
+    bool lint = false;        ///< warn about unused, uninitialised and the like, too (lint.h)
+    bool keepWritten = false; ///< Program::written
     /// The text of an included file that is newer than what the disk has (open in an editor); nothing: the disk's is right.
     std::function<std::optional<std::string>(const std::string& path)> openText{};
 };

@@ -4,15 +4,7 @@
 #include <algorithm>
 #include <utility>
 
-namespace alpenglow::rsl {
-
-std::string toString(const Whole& w, const Program& program) {
-    const bool known = w.structure >= 0 && size_t(w.structure) < program.structs.size();
-    return (known ? program.structs[size_t(w.structure)].name : "a structure") +
-           (w.array ? "[" + (w.array > 0 ? std::to_string(w.array) : "") + "]" : "");
-}
-
-namespace front {
+namespace alpenglow::rsl::front {
 
 /// Arguments that the shader does not write between the parentheses: what a method is called for.
 static size_t unwritten(const std::string& function) { return function.find("->") != function.npos; }
@@ -62,5 +54,4 @@ void Checker::noMatch(Expr& e, const std::vector<std::string>& candidates, std::
     sources_.report(e.place, what, hint, std::move(notes));
 }
 
-} // namespace front
-} // namespace alpenglow::rsl
+} // namespace alpenglow::rsl::front

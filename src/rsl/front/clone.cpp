@@ -9,6 +9,7 @@ struct Cloner {
     std::pair<std::string, std::string> rename;
     std::unordered_map<const Symbol*, Symbol*> symbols;
     std::unordered_map<const Function*, Function*> functions;
+    std::vector<Expr*> calls; ///< copies that are bound to functions
 
     ExprPtr copy(const ExprPtr& e) { return e ? copy(*e) : nullptr; }
     ExprPtr copy(const Expr& e) {
@@ -19,7 +20,6 @@ struct Cloner {
         c->varying = e.varying;
         c->handle = e.handle;
         c->place = e.place;
-        c->part = e.part;
         c->height = e.height;
         c->number = e.number;
         c->text = !rename.first.empty() && e.text == rename.first ? rename.second : e.text;
@@ -32,6 +32,7 @@ struct Cloner {
         c->shadeop = e.shadeop;
         c->signature = e.signature;
         c->function = e.function;
+        if (c->function) calls.push_back(c.get());
         return c;
     }
     void copy(const std::vector<NamedArg>& from, std::vector<NamedArg>& to) {
@@ -62,10 +63,7 @@ struct Cloner {
         c->result = f.result;
         c->anywhere = f.anywhere;
         c->place = f.place;
-        for (const auto& s : f.symbols) {
-            c->symbols.push_back(std::make_unique<Symbol>(*s));
-            symbols[s.get()] = c->symbols.back().get();
-        }
+        copy(f.symbols, c->symbols);
         for (Symbol* p : f.parameters) c->parameters.push_back(symbols.at(p));
         for (const ExprPtr& d : f.defaults) c->defaults.push_back(copy(d));
         for (const auto& n : f.nested) {
@@ -75,29 +73,68 @@ struct Cloner {
         c->body = copy(f.body);
         return c;
     }
+    void copy(const std::vector<std::unique_ptr<Symbol>>& from, std::vector<std::unique_ptr<Symbol>>& to) {
+        for (const auto& s : from) {
+            to.push_back(std::make_unique<Symbol>(*s));
+            symbols[s.get()] = to.back().get();
+        }
+    }
+    StructType copy(const StructType& s) {
+        StructType c{s.name, {}, s.methods, s.base, s.text, s.place};
+        for (const StructMember& m : s.members) c.members.push_back({m.name, m.type, m.storage, copy(m.init), m.place});
+        return c;
+    }
+    /// A shader with its variables, without what is made of them.
+    std::unique_ptr<Shader> head(const Shader& s) {
+        auto n = std::make_unique<Shader>();
+        n->kind = s.kind;
+        n->object = s.object;
+        n->publics = s.publics;
+        n->name = s.name;
+        n->place = s.place;
+        n->annotations = s.annotations;
+        copy(s.symbols, n->symbols);
+        return n;
+    }
+    void rest(const Shader& s, Shader& n) {
+        for (const auto& p : s.parameters) n.parameters.push_back({symbols.at(p.symbol), copy(p.defaultValue), p.defaultText});
+        for (const auto& f : s.nested) {
+            n.nested.push_back(copy(*f));
+            functions[f.get()] = n.nested.back().get();
+        }
+        n.body = copy(s.body);
+    }
 };
 
 } // namespace
 
 std::unique_ptr<Shader> clone(const Shader& s) {
     Cloner c;
-    auto n = std::make_unique<Shader>();
-    n->kind = s.kind;
-    n->object = s.object;
-    n->publics = s.publics;
-    n->name = s.name;
-    n->place = s.place;
-    n->annotations = s.annotations;
-    for (const auto& x : s.symbols) {
-        n->symbols.push_back(std::make_unique<Symbol>(*x));
-        c.symbols[x.get()] = n->symbols.back().get();
+    auto n = c.head(s);
+    c.rest(s, *n);
+    return n;
+}
+
+std::unique_ptr<Program> clone(const Program& p) {
+    Cloner c;
+    auto n = std::make_unique<Program>();
+    n->primitiveVariables = p.primitiveVariables;
+    n->rispecSpecular = p.rispecSpecular;
+    n->handles = p.handles;
+    n->channels = p.channels;
+    n->files = p.files;
+    n->preprocessed = p.preprocessed;
+    n->dependencies = p.dependencies;
+    n->plugins = p.plugins;
+    for (const auto& s : p.structs) n->structs.push_back(c.copy(s));
+    for (const auto& s : p.shaders) n->shaders.push_back(c.head(*s)); // functions have variables of shaders in them
+    for (const auto& f : p.functions) {
+        n->functions.push_back(c.copy(*f));
+        c.functions[f.get()] = n->functions.back().get();
     }
-    for (const auto& p : s.parameters) n->parameters.push_back({c.symbols.at(p.symbol), c.copy(p.defaultValue), p.defaultText});
-    for (const auto& f : s.nested) {
-        n->nested.push_back(c.copy(*f));
-        c.functions[f.get()] = n->nested.back().get();
-    }
-    n->body = c.copy(s.body);
+    for (size_t i = 0; i < p.shaders.size(); ++i) c.rest(*p.shaders[i], *n->shaders[i]);
+    for (Expr* e : c.calls)
+        if (const auto f = c.functions.find(e->function); f != c.functions.end()) e->function = f->second;
     return n;
 }
 

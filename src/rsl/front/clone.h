@@ -1,4 +1,4 @@
-// Deep copies of unchecked functions: each shader gets its own, in which the predefined variables are its own symbols.
+// Deep copies. Each shader gets its own of every unchecked function, in which the predefined variables are its own symbols.
 #pragma once
 #include "rsl/front/ast.h"
 
@@ -8,6 +8,8 @@ namespace alpenglow::rsl::front {
 std::unique_ptr<Function> clone(const Function&, const std::pair<std::string, std::string>& rename);
 /// With its nested functions and all its symbols.
 std::unique_ptr<Shader> clone(const Shader&);
+/// A checked program, with errors or without: calls in the copy are bound to the functions of the copy.
+std::unique_ptr<Program> clone(const Program&);
 /// Checked expressions too: what they are bound to stays the same.
 ExprPtr clone(const Expr&);
 

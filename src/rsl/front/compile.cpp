@@ -2,6 +2,7 @@
 #include "rsl/front/borrowed.h"
 #include "rsl/front/checker.h"
 #include "rsl/front/classes.h"
+#include "rsl/front/clone.h"
 #include "rsl/front/colournames.h"
 #include "rsl/front/headers.h"
 #include "rsl/front/inspect.h"
@@ -36,6 +37,7 @@ void findPlugins(Unit& unit, const FrontOptions& options, const std::string& fil
     }
 }
 
+/// keep: the program is returned after errors, too.
 std::unique_ptr<Program> compile(const std::string& text, const std::string& name, bool isFile, const FrontOptions& options,
                                  Diagnostics& diagnostics, bool keep = false) {
     SourceSet sources;
@@ -64,6 +66,8 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     findPlugins(unit, options, name, sources, *program);
     Checker checker(sources, unit, *program);
     checker.run();
+    std::unique_ptr<Program> written; // with its structures, which the warnings of -W and tools read
+    if ((options.lint || options.keepWritten) && !program->structs.empty()) written = clone(*program);
     lowerStructs(*program, sources, checker);
     // An include that is missing does no harm when nothing of it is missed.
     for (const auto& m : p.missing) {
@@ -73,9 +77,11 @@ std::unique_ptr<Program> compile(const std::string& text, const std::string& nam
     const bool failed = sources.errors() > 0;
     checkColourNames(*program, sources);
     if (options.lint) checker.warnOfNumbers();
-    if (options.lint) lint(*program, p.tokens, unit.skipped, sources);
+    if (options.lint) lint(written ? *written : *program, p.tokens, unit.skipped, sources);
     sources.flush(diagnostics);
     program->files = sources.names();
+    if (written) written->files = program->files;
+    if (options.keepWritten) program->written = std::move(written);
     if (failed && !keep) return nullptr;
     return program;
 }
@@ -98,7 +104,9 @@ std::unique_ptr<Program> compileText(const std::string& text, const std::string&
 
 std::unique_ptr<Program> inspectText(const std::string& text, const std::string& name, const FrontOptions& options,
                                      Diagnostics& diagnostics) {
-    return compile(text, name, false, options, diagnostics, true);
+    FrontOptions o = options;
+    o.keepWritten = true;
+    return compile(text, name, false, o, diagnostics, true);
 }
 
 } // namespace alpenglow::rsl

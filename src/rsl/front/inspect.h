@@ -21,8 +21,12 @@ StructSummary summary(const StructType&, const Program&);
 /// All structures of the program, in the order of the text.
 std::vector<StructSummary> summaries(const Program&);
 
-/// As compileText(), but returns the tree even after errors: never null. A tree with errors in it has
-/// calls without a callee and expressions without a type; it is for reading, not for compiling.
+/// The program as it was written, where structures are variables and expressions name members of them, if it was kept
+/// (FrontOptions::keepWritten); otherwise the program itself, which is the same if it has no structures.
+inline const Program& asWritten(const Program& p) { return p.written ? *p.written : p; }
+
+/// As compileText() with keepWritten, but returns the program even after errors: never null. A tree with errors in it has calls
+/// without a callee and expressions without a type; it is for reading, not for compiling.
 std::unique_ptr<Program> inspectText(const std::string& text, const std::string& name, const FrontOptions&, Diagnostics&);
 
 } // namespace alpenglow::rsl

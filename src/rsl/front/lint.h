@@ -1,5 +1,5 @@
-// Warnings that only who writes a shader wants to see (`compile -W`, the language server): a renderer that loads a shader from
-// 1995 keeps quiet about them.
+// Warnings that only those who write a shader want to see (`compile -W`, the language server): a renderer that loads a shader
+// from 1995 reports none of them.
 #pragma once
 #include "rsl/front/lexer.h"
 #include "rsl/front/source.h"
@@ -9,10 +9,9 @@
 
 namespace alpenglow::rsl::front {
 
-/// Looks through a checked program and warns about parameters and variables of the main file that nothing uses, variables that
-/// are read before they have a value, uniform variables that are changed where a varying condition holds, and what lint_calls.h
-/// knows. Trees with errors in them are looked at as far as they go; names in text that could not be read, `skipped`, count as
-/// used.
+/// Warns about a checked program, before lowerStructs(): parameters, variables and members of structures of the main file that
+/// nothing uses, and what lint_flow.h and lint_calls.h describe. Trees with errors in them are read as far as they go. Names in
+/// text that could not be read, `skipped`, count as used; unused members are reported only where there are no errors.
 void lint(const Program&, const std::vector<Token>&, const std::unordered_set<std::string>& skipped, SourceSet&);
 
 } // namespace alpenglow::rsl::front

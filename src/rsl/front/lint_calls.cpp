@@ -192,7 +192,7 @@ void lintCall(const Expr& e, SourceSet& sources) {
     }
 }
 
-void lintMessage(const Expr& e, const Program& program, SourceSet& sources) {
+void lintMessage(const Expr& e, const Program& program, const Paths& paths, SourceSet& sources) {
     if (!e.shadeop || e.args.size() < 2 || e.args[0]->kind != ExprKind::String) return;
     const std::string& op = e.shadeop->name;
     ShaderKind kind;
@@ -201,9 +201,8 @@ void lintMessage(const Expr& e, const Program& program, SourceSet& sources) {
     else if (op == "lightsource") kind = ShaderKind::Light;
     else if (op == "atmosphere" || op == "incident" || op == "opposite") kind = ShaderKind::Volume;
     else return;
-    const Expr* to = e.args[1].get();
-    while (to->kind == ExprKind::Index && !to->args.empty()) to = to->args[0].get();
-    if (!to->symbol || to->symbol->storage != Storage::Uniform || isStringLike(to->type.base)) return;
+    const auto to = paths.of(*e.args[1]);
+    if (!to || paths.memberStorage(*to->symbol, to->first) != Storage::Uniform || isStringLike(to->type.base)) return;
     const Shader* varying = nullptr;
     for (const auto& s : program.shaders)
         for (const ShaderParameter& p : s->parameters) {
@@ -211,7 +210,7 @@ void lintMessage(const Expr& e, const Program& program, SourceSet& sources) {
             if (p.symbol->storage != Storage::Varying) return; // of one that it may take
             varying = s.get();
         }
-    if (varying) sources.report(e.args[1]->place, msg::kUniformReceiver(to->symbol->name, e.args[0]->text, varying->name, op));
+    if (varying) sources.report(e.args[1]->place, msg::kUniformReceiver(to->name, e.args[0]->text, varying->name, op));
 }
 
 void lintCondition(const Expr& e, SourceSet& sources) {

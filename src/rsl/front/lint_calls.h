@@ -1,7 +1,8 @@
-// The part of the warnings for who writes shaders (lint.h) that is about what calls are given: patterns of printf(), names that
-// mean nothing, conditions that are assignments.
+// The part of the warnings for those who write shaders (lint.h) that is about the arguments of calls: patterns of printf(), names
+// that mean nothing, conditions that are assignments.
 #pragma once
 #include "rsl/front/lexer.h"
+#include "rsl/front/paths.h"
 #include "rsl/front/source.h"
 #include <vector>
 
@@ -11,7 +12,7 @@ namespace alpenglow::rsl::front {
 void lintCall(const Expr&, SourceSet&);
 
 /// Warns where a uniform variable is to take what a shader of the same file has as varying: surface("x", u).
-void lintMessage(const Expr&, const Program&, SourceSet&);
+void lintMessage(const Expr&, const Program&, const Paths&, SourceSet&);
 
 /// Warns about a condition of `if`, `while`, `for` that is an assignment.
 void lintCondition(const Expr&, SourceSet&);

@@ -30,7 +30,6 @@ void Lowering::splitAll(Owner& owner) {
         Symbol& s = *owner[i];
         if (!isStruct(s.type)) continue;
         Symbols& parts = parts_[&s];
-        const auto of = std::make_shared<StructVariable>(s.name, s.type.structure, s.type.array);
         for (const Leaf& l : leaves(s.type)) {
             Storage storage = s.storage == Storage::Unspecified ? l.storage : s.storage;
             const bool open = storage == Storage::Unspecified;
@@ -42,7 +41,7 @@ void Lowering::splitAll(Owner& owner) {
             part->isExtern = s.isExtern;
             part->isConstant = s.isConstant;
             part->resizable = s.origin == Symbol::Origin::Local && l.type.array == -1;
-            part->of = of;
+            members_.insert(part);
             if (open && storage == Storage::Varying && s.origin == Symbol::Origin::FunctionParameter)
                 checker_.classOfArgument(*part);
             parts.push_back(part);
@@ -225,9 +224,6 @@ void Lowering::statement(StmtPtr s, std::vector<StmtPtr>& target) {
     for (auto& t : out) target.push_back(std::move(t));
 }
 
-/// What the first of the members of a structure says about the whole.
-static Whole wholeOf(Type t, size_t members, bool self) { return {t.structure, int(members), t.array, self}; }
-
 void Lowering::function(Function& f) {
     auto* owner = std::exchange(owner_, &f.symbols);
     const Type result = std::exchange(result_, f.result);
@@ -246,7 +242,6 @@ void Lowering::function(Function& f) {
             continue;
         }
         const Symbols& parts = parts_[p];
-        if (!parts.empty()) parts[0]->whole = wholeOf(p->type, parts.size(), p->name == "this");
         parameters.insert(parameters.end(), parts.begin(), parts.end());
     }
     if (isStruct(f.result)) {
@@ -259,7 +254,6 @@ void Lowering::function(Function& f) {
             results_.push_back(r);
             parameters.push_back(r);
         }
-        if (!results_.empty()) results_[0]->whole = wholeOf(f.result, results_.size(), true);
         f.result = kNone;
     }
     f.parameters = std::move(parameters);
@@ -375,7 +369,7 @@ template <class F> void everySlot(Stmt& s, const F& f) {
 /// What can be said of members only when they are variables.
 void Lowering::checkAll() {
     const auto uniform = [&](const Symbol* s, const Expr& value) {
-        if (s && s->of) checker_.assignedToUniform(*s, value);
+        if (s && members_.count(s)) checker_.assignedToUniform(*s, value);
     };
     const auto statement = [&](const Stmt& s) {
         for (const auto& d : s.declarators)

@@ -7,6 +7,7 @@
 #include "rsl/front/structures.h"
 #include <map>
 #include <unordered_map>
+#include <unordered_set>
 
 namespace alpenglow::rsl::front {
 
@@ -14,8 +15,8 @@ inline constexpr Type kNone{Base::Void, 0};
 inline constexpr Type kNumber{Base::Float, 0};
 inline constexpr const char* kElement = "element"; ///< Expr::text of an index into members of an array of structures
 
-/// The use of a variable. `part`: one of several that stand where the shader names a structure.
-ExprPtr use(Symbol*, Place, bool part = false);
+/// The use of a variable.
+ExprPtr use(Symbol*, Place);
 /// left = right of the same type.
 ExprPtr assign(ExprPtr left, ExprPtr right, Place);
 ExprPtr floatOf(double, Place);
@@ -110,6 +111,7 @@ private:
     const Structures structures_;
     std::map<std::pair<int, int>, std::vector<Leaf>> leaves_;        ///< by structure and length
     std::unordered_map<const Symbol*, Symbols> parts_;               ///< of the variables of structures
+    std::unordered_set<const Symbol*> members_;                      ///< all of these parts
     std::unordered_map<const Function*, std::vector<bool>> outputs_; ///< of the parameters as written
     Owner* owner_ = nullptr;
     Type result_ = kNone; ///< of the function being taken apart

@@ -16,12 +16,11 @@ void settle(Expr& e) {
     }
 }
 
-ExprPtr use(Symbol* s, Place place, bool part) {
+ExprPtr use(Symbol* s, Place place) {
     ExprPtr e = variable(s->name, place);
     e->symbol = s;
     e->type = s->type;
     e->varying = s->storage != Storage::Uniform;
-    e->part = part;
     return e;
 }
 
@@ -208,7 +207,7 @@ void Lowering::flatten(ExprPtr e, Type want, List& pre, List& out) {
     case ExprKind::Variable: {
         const auto parts = parts_.find(e->symbol);
         if (parts == parts_.end()) return wrong();
-        for (Symbol* s : parts->second) out.push_back(use(s, place, true));
+        for (Symbol* s : parts->second) out.push_back(use(s, place));
         return;
     }
     case ExprKind::Index:
@@ -254,13 +253,7 @@ void Lowering::pick(Expr& e, List& pre, List& out) {
     for (const StructMember& m : structures_.of(type).members) {
         const size_t parts = isStruct(m.type) ? leaves(m.type).size() : 1;
         if (m.name == e.text)
-            for (size_t i = 0; i < parts; ++i) {
-                out.push_back(at + i < base.size() ? std::move(base[at + i]) : broken(e.place));
-                if (isStruct(m.type)) continue;
-                Expr* root = out.back().get(); // a plain member is named itself
-                while (root->kind == ExprKind::Index) root = root->args[0].get();
-                root->part = false;
-            }
+            for (size_t i = 0; i < parts; ++i) out.push_back(at + i < base.size() ? std::move(base[at + i]) : broken(e.place));
         at += parts;
     }
     if (out.empty()) out.push_back(broken(e.place));

@@ -30,7 +30,7 @@ struct Builder::Illuminance {
     void readLight(const Pair&);
 };
 
-/// Tells the renderer a value before the loop begins.
+/// Passes a value to the renderer before the loop begins.
 void Builder::Illuminance::give(const std::string& name, Inst* v, Type t) { addPair(setup, given, name, v, t); }
 
 void Builder::Illuminance::category() {

@@ -2,6 +2,7 @@
 #include "base/limits.h"
 #include "front_helpers.h"
 #include "rsl/front/inspect.h"
+#include "rsl/front/visit.h"
 #include "rsl/messages/messages.h"
 #include <filesystem>
 #include <fstream>
@@ -219,6 +220,39 @@ TEST(Inspect, ProgramsWithErrorsComeBack) {
     EXPECT_GT(e.errors(), 0);
 }
 
+// Tools read structures as they are written, kernels are built from their members. A call in one form is bound to a function of
+// the same form, also where a function calls another and where a method of a structure is called.
+TEST(Inspect, StructuresInBothForms) {
+    Diagnostics d;
+    const auto p = inspectText("struct S { float a; float b; float sum() { return a + b; } }\n"
+                               "float twice(S q) { return 2 * q->sum(); }\n"
+                               "surface s(S k = S(1, 2);) { Ci = twice(k); }",
+                               "s.sl", {}, d);
+    EXPECT_TRUE(d.all().empty());
+    const auto names = [](const Program& of) {
+        std::vector<std::string> all;
+        for (const auto& x : of.shaders.at(0)->parameters) all.push_back(x.symbol->name);
+        return all;
+    };
+    EXPECT_EQ(names(asWritten(*p)), std::vector<std::string>{"k"});
+    EXPECT_EQ(names(*p), (std::vector<std::string>{"k->a", "k->b"}));
+    for (const Program* of : {&asWritten(*p), static_cast<const Program*>(p.get())}) {
+        std::set<const Function*> own;
+        front::everyFunction(*of, [&](const Function& f) { own.insert(&f); });
+        int calls = 0;
+        front::everyBody(*of, [&](const Stmt& b) {
+            front::everyExpr(b, [&](const Expr& e) {
+                if (!e.function) return;
+                ++calls;
+                EXPECT_TRUE(own.count(e.function)) << e.text;
+            });
+        });
+        EXPECT_EQ(calls, 2);
+    }
+    const auto plain = inspectText("surface s() { Ci = 1; }", "s.sl", {}, d);
+    EXPECT_EQ(&asWritten(*plain), plain.get());
+}
+
 TEST(Lint, Unused) {
     EXPECT_EQ(linted("surface s(\nfloat a = 1;\nfloat b = 1;)\n{\nfloat c;\nfloat d = b;\nCi = d;\n}\n"),
               (Ids{"unused-parameter:2", "unused-variable:5"}));
@@ -238,6 +272,49 @@ TEST(Lint, AShaderUsesWhatAnyOfItsKindsUses) {
                      "    public void surface(output color Ci; output color Oi) { Ci = k; Oi = 1; }\n"
                      "    public void displacement(output point P; output normal N) { P += h * N; }\n}\n"),
               Ids());
+}
+
+// A member is used where its name is behind "->" or ".", or bare in a method. What other shaders see they may use.
+TEST(Lint, UnusedMembers) {
+    const std::string s = "struct S {\nfloat a = 1;\nfloat b = 2;\n}\n";
+    EXPECT_EQ(linted(s + "surface t() { S q; Ci = q->a; }"), Ids{"unused-member:3"});
+    EXPECT_EQ(linted(s + "surface t() { S q = S(1, 2); q->b = 3; S r = q; Ci = r->a; }"), Ids());
+    EXPECT_EQ(linted(s + "surface t() { Ci = 1; }"), Ids()) << "no structure of this kind";
+    EXPECT_EQ(linted(s + "surface t(output S q = S(1, 2);) { Ci = q->a; }"), Ids()) << "an output of the shader";
+    EXPECT_EQ(linted(s + "surface t(shader h = null;) { S q; if (h != null) h->take(q); Ci = q->a; }"), Ids());
+    EXPECT_EQ(linted("struct S {\nfloat a = 1;\nfloat b = 2;\nfloat get() { return b; }\n}\nsurface t() { S q; Ci = q->a; }"),
+              Ids());
+    // Inherited members are those of the structure that declares them.
+    EXPECT_EQ(linted(s + "struct T : S {\nfloat c = 3;\n}\nsurface t() { T q; Ci = q->a; }"),
+              (Ids{"unused-member:3", "unused-member:6"}));
+    // Where something is wrong, what could not be read may use it.
+    EXPECT_EQ(linted(s + "surface t() {\nS q;\nCi = q->a + nosuch;\n}"), Ids{"undeclared:7"});
+}
+
+TEST(Lint, MembersReadBeforeTheyHaveAValue) {
+    const std::string s = "struct In { float x; float y; }\nstruct S { In in; string t; float a[2]; }\n";
+    const auto said = [&](const std::string& body) {
+        FrontOptions o;
+        o.lint = true;
+        std::vector<std::string> list;
+        for (const Diagnostic& d : compileSnippet(s + "float f(In i) { return i->x + i->y; }\n" + body, o).messages)
+            if (d.id.ends_with("uninitialised")) list.push_back(d.message.substr(0, d.message.find(" read")));
+        return list;
+    };
+    EXPECT_EQ(said("surface t() { S q; q->t = \"\"; q->a[0] = 1; q->in->x = 1; Ci = q->in->x + q->a[1]; printf(q->t); }"), Ids());
+    EXPECT_EQ(said("surface t() { S q; q->in->x = 1; Ci = q->in->x + q->in->y; }"), Ids{"'q->in->y' is"});
+    EXPECT_EQ(said("surface t() { S q; q->in->x = 1; Ci = f(q->in); }"), Ids{"'q->in->y' is"});
+    EXPECT_EQ(said("surface t() { S q; q->a[0] = 1; Ci = q->a[0] + f(q->in); }"), Ids{"'q->in' is"});
+    EXPECT_EQ(said("surface t() { S q, r; r = q; Ci = r->a[0]; }"), Ids{"'q' is"});
+    EXPECT_EQ(said("surface t() { S q; if (u > .5) q->in->x = 1; Ci = q->in->x; }"), Ids{"'q->in->x' may be"});
+}
+
+TEST(Lint, MembersGivenToTwoOutputs) {
+    const std::string s = "struct S { float x; float y; }\nvoid two(output float a, b) { a = u; b = a; }\n"
+                          "void set(output S a; output float b) { a->x = 1; a->y = 2; b = a->y; }\n";
+    EXPECT_EQ(linted(s + "surface t() { S q = S(0, 0); two(q->x, q->y); Ci = q->x; }"), Ids());
+    EXPECT_EQ(linted(s + "surface t() { S q = S(0, 0); two(q->x, q->x); Ci = q->y; }"), Ids{"shared-output:4"});
+    EXPECT_EQ(linted(s + "surface t() { S q = S(0, 0); set(q, q->y); Ci = q->x; }"), Ids{"shared-output:4"});
 }
 
 TEST(Lint, NothingUnlessAsked) { EXPECT_EQ(compileSnippet("surface s(float a = 1;) { float x; Ci = x; }").messages.size(), 0u); }

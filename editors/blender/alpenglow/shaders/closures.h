@@ -102,7 +102,7 @@ color blFacetsOf(string kind; normal n; vector udir; float along, across)
     return light;
 }
 color blFacets(normal n; vector udir; float along, across) { return blFacetsOf("ggx", n, udir, along, across); }
-/* The Fresnel reflectance of a dielectric's facets as a whole. As a weight it tells which lobe of a surface is worth a ray. */
+/* The Fresnel reflectance of a dielectric's facets as a whole. As a weight it shows which lobe of a surface is worth a ray. */
 float blMirrored(float c, a, eta) { return blDielectric(blCosine(c, a), eta); }
 /* Glossy BSDF. whole 1: light that facets lose to each other is given back ("Multiscatter GGX"). */
 color blGlossy(normal n; vector udir; float roughness, anisotropy, turn, whole; string kind)

@@ -162,4 +162,20 @@ TEST(Frames, BadOptionsAreReported) {
     EXPECT_EQ(read("Format 70000 10 1")->only().code, Rie::Limit);
 }
 
+// JPatch writes "catmullrom"; RenderMan 22 names its cameras PxrPerspective, PxrCamera and PxrOrthographic.
+TEST(Frames, NamesOfOtherProgramsMeanTheSame) {
+    const auto options = [](const std::string& text, size_t warnings) {
+        auto c = read(text + "\nBasis \"catmullrom\" 1 \"bspline\" 1\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+        EXPECT_EQ(c->count(), warnings) << c->messages();
+        EXPECT_EQ(c->primitive().attributes->ubasis.name, "catmull-rom");
+        EXPECT_EQ(c->primitive().attributes->vbasis.name, "b-spline");
+        return c->frame().options;
+    };
+    EXPECT_EQ(options("PixelFilter \"catmullrom\" 4 4", 0).filter.name, "catmull-rom");
+    EXPECT_EQ(options("PixelFilter \"RiGaussianFilter\" 2 2", 0).filter.name, "gaussian");
+    EXPECT_EQ(options("Projection \"PxrPerspective\" \"float fov\" 30", 0).fov, 30);
+    EXPECT_EQ(options("Projection \"PxrCamera\" \"float fov\" 30 \"float tilt\" 3", 1).projection, "perspective");
+    EXPECT_EQ(options("Projection \"PxrOrthographic\"", 0).projection, "orthographic");
+}
+
 } // namespace frames_test

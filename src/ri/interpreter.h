@@ -150,6 +150,8 @@ public:
     void risLight(const Call& call);    ///< Light
     void lightFilter(const Call& call); ///< LightFilter
     void isRis() { ris_ = true; }       ///< the scene has requests of RIS
+    void editWorld(const Call& call);    ///< EditWorldBegin
+    void endEditWorld(const Call& call);
     /// The shader that an Integrator sees instead of all surfaces; null: none.
     void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
     /// Whether the integrator lights a scene without lights from the eye.
@@ -371,6 +373,7 @@ private:
     static scene::AttributesRef withoutLights(const scene::AttributesRef& a, size_t stable);
     scene::Object forThisWorld(const StoredObject& o) const;
     void rebase(scene::Attributes& a, const scene::Transform& cameraToWorld);
+    bool leftOutEdit(const Call& call); ///< whether a request belongs to an edit of a world that stands
     bool evaluate(const Call& call);
     /// The value of a variable of IfBegin or of a text. If it is not set: with `standard` its default, else nothing.
     std::optional<ConditionValue> variable(const std::string& name, bool standard) const;
@@ -391,6 +394,8 @@ private:
     std::vector<Block> blocks_;
     std::array<int, 8> depth_{}; ///< open blocks, by BlockKind
     int overflow_ = 0;           ///< Begins beyond limits::kStackDepth and those in them, whose Ends are ignored
+    int leftOutEdits_ = 0;       ///< open EditBegins in an EditWorldBegin
+    bool editsWorld_ = false;    ///< EditWorldBegin is open
     int deepConditions_ = 0;     ///< the same of IfBegin
     int nested_ = 0;             ///< calls of deeper() that have not returned
     std::optional<Motion> motion_;

@@ -40,7 +40,7 @@ void Interpreter::nextScene() {
     archivesRead_.clear();
     shelf_.forgetPlaces();
     baseWorld_ = worldSerial_;
-    ris_ = filtered_ = false;
+    ris_ = linksFilters_ = false;
     headlight_ = true;
     integratorSurface_ = nullptr;
 }

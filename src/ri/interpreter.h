@@ -146,12 +146,14 @@ public:
 
     /// RIS: the shader of a Bxdf or similar request, with the patterns that its connections name now (scene/network.h).
     scene::ShaderRef network(const Call& call, scene::Keeper);
-    void pattern(const Call& call);     ///< Pattern
-    void risLight(const Call& call);    ///< Light
-    void lightFilter(const Call& call); ///< LightFilter
-    void isRis() { ris_ = true; }       ///< the scene has requests of RIS
+    void pattern(const Call& call);      ///< Pattern
+    void risLight(const Call& call);     ///< Light
+    void lightFilter(const Call& call);  ///< LightFilter
+    void enableFilter(const Call& call); ///< EnableLightFilter
     void editWorld(const Call& call);    ///< EditWorldBegin
     void endEditWorld(const Call& call);
+    void linksFilters() { linksFilters_ = true; } ///< Attribute "lightfilter"
+    void isRis() { ris_ = true; }                 ///< the scene has requests of RIS
     /// The shader that an Integrator sees instead of all surfaces; null: none.
     void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
     /// Whether the integrator lights a scene without lights from the eye.
@@ -295,7 +297,7 @@ private:
     std::shared_ptr<scene::ShaderCall> networkCall(const Call&); ///< a node of a network of patterns
     /// A node of OSL with its patterns, as one shader.
     void oslPatterns(const Call&, const scene::ShaderCall& given, const scene::Param& named);
-    void sayFilterSubsets(const scene::Frame&);
+    void dropFilterLinks(scene::Frame&) const;
     void overrideAttributes(scene::Frame&); ///< at WorldEnd: lights that are on everywhere, the surface of the integrator
     void addFilters(Call& call) const;      ///< light filters as parameters of the light
     void addProfile(Call& call);            ///< an IES profile as a parameter of the light
@@ -416,7 +418,7 @@ private:
     scene::ShaderRef integratorSurface_;                  ///< of all surfaces of this world
     bool headlight_ = true;                               ///< no integrator, or PxrDefault: what has no light is lit from the eye
     bool ris_ = false;                                    ///< the scene has requests of RIS
-    bool filtered_ = false;                               ///< the scene has a LightFilter
+    bool linksFilters_ = false;                           ///< some primitive may leave out some filter of its lights
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;

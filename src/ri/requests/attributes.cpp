@@ -180,6 +180,7 @@ std::string membership(const std::string& before, const std::string& change) {
 
 void attribute(Interpreter& in, const Call& c) {
     const std::string& category = c.text(0);
+    if (category == "lightfilter") in.linksFilters();
     for (scene::Param& p : in.bind(c, Use::Attribute, category)) {
         std::string key = category + ":" + p.name;
         auto& values = in.attributes().values;

@@ -48,6 +48,36 @@ TEST(RisPatterns, TeeHandsOnAndSidesAreTold) {
     EXPECT_EQ(number("PxrShadedSide", "resultF", "ReverseOrientation\n"), 1 - front);
 }
 
+// Outputs of a float keep one number beside tees of numbers; beside one of colours they are as wide as colours.
+TEST(RisPatterns, TeesAndGeometryAreOutputs) {
+    writeShader("showsboth",
+                "surface showsboth(varying color c = 0; varying float x = 0, aov = 0;) { Oi = 1; Ci = c * x + aov; }\n");
+    const std::string mine = "Pattern \"PxrTee\" \"t\" \"color inputRGB\" [.1 .2 .3] \"string aov\" \"mine\"\n";
+    const std::string num = "Pattern \"PxrTee\" \"u\" \"float inputF\" .75 \"string aov\" \"num\"\n";
+    const auto outputs = [&](const std::string& patterns, const std::string& taken, std::vector<std::string> names) {
+        Settings set;
+        set.hider = Hider::Path;
+        set.outputs = std::move(names);
+        Scene s("WorldBegin\n" + patterns + "Pattern \"PxrGeometricAOVs\" \"g\"\nBxdf \"showsboth\" \"b\" " + taken +
+                    "\nPolygon \"P\" [-1 1 2  1 1 2  1 -1 2  -1 -1 2] \"st\" [0 0  1 0  1 1  0 1]\nWorldEnd\n",
+                set);
+        const CameraRay ray = rayTo({0, 0, 0}, {kX, kY, 2});
+        return s.trace({&ray, 1})[0].aovs;
+    };
+    const auto expectNumbers = [](const std::vector<float>& got, const std::vector<float>& want) {
+        ASSERT_EQ(got.size(), want.size());
+        for (size_t i = 0; i < want.size(); ++i) EXPECT_NEAR(got[i], want[i], 1e-6) << i;
+    };
+    const std::string c = "\"reference color c\" [\"t:resultRGB\"] ", x = "\"reference float x\" [\"u:resultF\"] ",
+                      g = "\"reference float aov\" [\"g:resultAOV\"]";
+    expectNumbers(outputs(mine, c, {"mine"}), {.1f, .2f, .3f});
+    expectNumbers(outputs(num, x, {"num"}), {.75f});
+    expectNumbers(outputs(mine + num, c + x + g, {"mine", "__depth", "__st", "__Pworld"}),
+                  {.1f, .2f, .3f, 2, .625f, .25f, 0, kX, kY, 2});
+    EXPECT_NEAR(outputs(mine + num, c + x, {"num"}).at(0), .75, 1e-6);
+    EXPECT_NEAR(std::fabs(outputs("", g, {"__Nworld"}).at(2)), 1, 1e-6);
+}
+
 TEST(RisPatterns, ProductsOfVectors) {
     EXPECT_FLOAT_EQ(number("PxrDot \"vector vector1\" [1 2 3] \"vector vector2\" [4 -5 6]", "result"), 12);
     const std::string two = "PxrCross \"vector vector1\" [1 2 2] \"vector vector2\" [0 0 3]";

@@ -4,7 +4,7 @@
 #include "bsdf/sampling.h"
 #include "integrator/emission.h"
 #include "integrator/lightkernels.h"
-#include "world/skytable.h"
+#include "world/skysampler.h"
 
 namespace alpenglow::integrator {
 
@@ -82,10 +82,9 @@ ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const E
 /// From a bright direction of a sky. Dimmer directions carry no power: lobes find them without a guide. `way`, which emission
 /// learns, is the place, because bright directions are few.
 void startBright(const EmissionPlan& plan, const EmissionPlan::Light& l, EmissionStart& s) {
-    constexpr float kBright = 8; // times the mean over all directions
     Vec3 w;
     float density = 0;
-    if (!l.light->sky->sample(s.drawn.place, w, density) || density * 4 * kPiF < kBright) return;
+    if (!l.light->sky->sampleBright(s.drawn.place, w, density)) return;
     s.dir = -w;
     s.origin = onDisc(plan, s.dir, s.drawn.way);
     s.factor = kPiF * plan.radius * plan.radius / density;

@@ -38,9 +38,9 @@ struct BoundLight {
     LightKind kind = LightKind::Ambient;
     InstanceRef instance;
     BoundKernel kernel;
-    std::shared_ptr<Emitter> emitter;          ///< Area
-    std::shared_ptr<const class SkyTable> sky; ///< Environment, path: radiance table; null: rays of lobes find it without one
-    bool importance = true;                    ///< false: not sampled where rays find it (__importancesample 0)
+    std::shared_ptr<Emitter> emitter;            ///< Area
+    std::shared_ptr<const class SkySampler> sky; ///< Environment, path; null: rays of lobes find it without samples
+    bool importance = true;                      ///< false: not sampled where rays find it (__importancesample 0)
     /// Whether it has a density over directions: an emitter that rays can hit, or a sky.
     bool hasDensity() const { return (kind == LightKind::Area && !mean) || isSky(); }
     /// Environment, path, without a table: sampled only where a light guide knows which part is visible (lightguide.h).

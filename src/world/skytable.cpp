@@ -2,6 +2,7 @@
 #include "base/exact.h"
 #include "world/emitterfootprint.h"
 #include "world/impl.h"
+#include "world/skysampler.h"
 #include <algorithm>
 #include <cmath>
 
@@ -154,7 +155,7 @@ constexpr double kConcentrated = 4;
 constexpr double kLeastShare = 1. / 4096;
 constexpr float kContrast = 1.5f;
 constexpr size_t kMostRefined = 1024, kMostParts = 65536;
-constexpr int kMostSide = 32, kLeastSide = 4;
+constexpr int kMostSide = 64, kLeastSide = 4;
 
 std::vector<SkyTable::Refined> cellsToRefine(const std::vector<float>& cells, int width, int height) {
     std::vector<double> area; // of a cell, by row
@@ -283,7 +284,7 @@ void WorldImpl::tabulateSkies(Evaluator& evaluator) {
         std::vector<float> cells = luminanceOf(l, columns, rows, kPointsOfCell, evaluator);
         std::vector<SkyTable::Refined> refined = cellsToRefine(cells, columns, rows);
         for (SkyTable::Refined& r : refined) measureParts(r, l, columns, rows, evaluator);
-        auto table = std::make_shared<SkyTable>(columns, rows, std::move(cells), std::move(refined));
+        auto table = std::make_shared<SkySampler>(columns, rows, std::move(cells), std::move(refined));
         if (!(table->concentration() > kConcentrated)) continue;
         l.power = float(table->integral() / (2 * kPi)); // between the effect of a uniform sky and of a small sun overhead
         l.sky = std::move(table);

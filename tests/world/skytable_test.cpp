@@ -3,7 +3,7 @@
 #include "base/exact.h"
 #include "statistics/chisquare.h"
 #include "statistics/nightly.h"
-#include "world/skytable.h"
+#include "world/skysampler.h"
 #include <array>
 #include <cmath>
 #include <gtest/gtest.h>
@@ -12,6 +12,7 @@
 namespace skytable_test {
 
 using namespace alpenglow;
+using world::SkySampler;
 using world::SkyTable;
 
 namespace {
@@ -214,6 +215,76 @@ TEST(SkyTable, BlackSkiesAndEnds) {
                 EXPECT_NEAR(length(w), 1, 1e-6) << s.name;
             }
     }
+}
+
+/// A sky of 64 x 32 cells: `bright` in four cells, two of them refined with a dark half, and `dim` elsewhere.
+Sky sunnySky(float bright, float dim) {
+    Sky s{"a sun", 64, 32, std::vector<float>(64 * 32, dim)};
+    for (const int column : {40, 41})
+        for (const int row : {9, 10}) {
+            s.weights[size_t(row * 64 + column)] = row == 10 ? bright : 0; // replaced where refined
+            if (row == 9) s.refined.push_back({column, row, 2, {dim, dim, bright, bright}});
+        }
+    return s;
+}
+
+TEST(SkySampler, BrightDirectionsAreAStratum) {
+    const Sky s = sunnySky(1000, 1);
+    const SkySampler sky(s.width, s.height, s.weights, s.refined);
+    const SkyTable whole(s.width, s.height, s.weights, s.refined);
+    EXPECT_EQ(sky.integral(), whole.integral());
+    EXPECT_EQ(sky.concentration(), whole.concentration());
+    const double mean = (1000 + 1) / 2., bright = mean * cellOf(s, 9) * 2 + 1000 * cellOf(s, 10) * 2,
+                 rest = sky.integral() - bright;
+    EXPECT_NEAR(bright / sky.integral(), .66, .01);
+    EXPECT_EQ(sky.brightChance(), .75f); // the nearest multiple of 1/4
+    const auto pdfAt = [&](int column, int row, float t) {
+        return sky.pdf(SkyTable::direction(column, row, s.width, s.height, .5f, t));
+    };
+    EXPECT_NEAR(pdfAt(41, 10, .3f), .75 * 1000 / bright, 1e-5 * 1000 / bright);
+    EXPECT_NEAR(pdfAt(20, 5, .3f), .25 / rest, 1e-5 / rest);
+    const double least = SkyTable::kLeastPart * mean, parts = (1000 + least) / 2; // mean of the parts, with the least density
+    EXPECT_NEAR(pdfAt(40, 9, .75f), .75 * 1000 * (mean / parts) / bright, 1e-5 * 1000 / bright);
+    EXPECT_NEAR(pdfAt(40, 9, .25f), .75 * least * (mean / parts) / bright, 1e-5 * 1000 / bright);
+    // Of rows of numbers with u.y in n equal steps, exactly three quarters lie in bright cells.
+    int found = 0, all = 0;
+    const auto isBright = [&](const Vec3& w) {
+        const double turn = std::atan2(double(w.y), double(w.x)) / (2 * kPi);
+        const int column = int((turn < 0 ? turn + 1 : turn) * s.width), row = int(std::acos(double(w.z)) / kPi * s.height);
+        return (column == 40 || column == 41) && (row == 9 || row == 10);
+    };
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+            Vec3 w;
+            float pdf;
+            ASSERT_TRUE(sky.sample({(float(x) + .37f) / 16, (float(y) + .61f) / 16}, w, pdf));
+            EXPECT_EQ(pdf, sky.pdf(w));
+            found += isBright(w);
+            ++all;
+            ASSERT_TRUE(sky.sampleBright({(float(x) + .37f) / 16, (float(y) + .61f) / 16}, w, pdf));
+            EXPECT_TRUE(isBright(w));
+        }
+    EXPECT_EQ(found, all * 3 / 4);
+}
+
+TEST(SkySampler, OneTableWhereNothingIsGained) {
+    // An even sky; one lit by its sun alone; one whose sun has little of the light.
+    for (const Sky& s : {sunnySky(1, 1), sunnySky(3000, 1e-3f), sunnySky(30, 1)}) {
+        const SkySampler sky(s.width, s.height, s.weights, s.refined);
+        const SkyTable whole(s.width, s.height, s.weights, s.refined);
+        EXPECT_EQ(sky.brightChance(), 0);
+        for (const Vec2 u : {Vec2(.1f, .9f), Vec2(.7f, .33f), Vec2(.999f, .5f)}) {
+            Vec3 a, b;
+            float p = 0, q = 0;
+            EXPECT_EQ(sky.sample(u, a, p), whole.sample(u, b, q));
+            EXPECT_EQ(a, b);
+            EXPECT_EQ(p, q);
+        }
+    }
+    Vec3 w;
+    float pdf;
+    EXPECT_FALSE(SkySampler(64, 32, sunnySky(1, 1).weights).sampleBright({.5f, .5f}, w, pdf));
+    EXPECT_TRUE(SkySampler(64, 32, sunnySky(3000, 1e-3f).weights).sampleBright({.5f, .5f}, w, pdf));
 }
 
 } // namespace skytable_test

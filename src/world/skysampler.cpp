@@ -8,7 +8,7 @@ namespace alpenglow::world {
 namespace {
 /// Bright directions are a stratum if they have this share of the light, and no larger part of all directions: then few lobe rays
 /// find them, and samples outside of them are not wasted.
-constexpr double kLeastShare = .1, kMostShare = .97, kMostArea = .02;
+constexpr double kLeastBright = .1, kMostBright = .97, kMostArea = .02;
 
 /// The multiple of 1/4 nearest to a share, or 7/8: multiples of powers of 1/2 keep a net's number of points in a stratum exact.
 float chanceOf(double share) { return share > .8125 ? .875f : float(std::clamp(std::round(share * 4), 1., 3.) / 4); }
@@ -41,7 +41,7 @@ SkySampler::SkySampler(int width, int height, std::vector<float> weights, std::v
     }
     auto apart = std::make_unique<SkyTable>(width, height, std::move(bright), std::move(brightParts));
     const double share = apart->integral() / integral_;
-    if (!(share >= kLeastShare && share <= kMostShare && area <= kMostArea)) return;
+    if (!(share >= kLeastBright && share <= kMostBright && area <= kMostArea)) return;
     bright_ = std::move(apart);
     rest_ = std::make_unique<SkyTable>(width, height, std::move(weights), std::move(restParts));
     brightChance_ = chanceOf(share);

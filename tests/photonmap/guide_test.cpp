@@ -178,6 +178,31 @@ TEST(CausticGuide, DrawsByItsDensity) {
     }
 }
 
+TEST(CausticGuide, FindsTogetherAsAlone) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> u(-1, 1);
+    std::vector<GuidePhoton> photons;
+    for (int i = 0; i < 5000; ++i) { // on four of six sides, most of them near a corner, so that leaves lie at different depths
+        const float far = i % 4 ? .1f : 1.f;
+        photons.push_back({Vec3(u(random), u(random), u(random)) * far, {0, 0, 3}, 1 + i % 4, .01f});
+    }
+    const CausticGuide guide(photons, 1);
+    int met = 0;
+    for (int turn = 0; turn < 200; ++turn) {
+        std::vector<SurfaceTree::Point> points;
+        for (size_t i = 0; i < size_t(turn) % SurfaceTree::kTogether + 1; ++i)
+            points.push_back({Vec3(u(random), u(random), u(random)) * (i % 5 == 4 ? 3.f : i % 2 ? .1f : 1.f), 1 + int(i) % 6});
+        if (turn == 7) points[0].P.y = NAN;
+        const CausticGuide::Cell* found[SurfaceTree::kTogether];
+        guide.find(points, found);
+        for (size_t i = 0; i < points.size(); ++i) {
+            EXPECT_EQ(found[i], guide.find(points[i].P, points[i].side));
+            met += found[i] != nullptr;
+        }
+    }
+    EXPECT_GT(met, 500);
+}
+
 TEST(CausticGuide, SendsByWhatTheEyeGets) {
     std::vector<GuidePhoton> photons(100, {{0, 0, 0}, {0, 1, 0}, SurfaceTree::sideOf({0, 1, 0}), .01f});
     for (size_t i = 0; i < photons.size(); ++i) photons[i].P = {float(i % 10), 0, float(i / 10)};

@@ -46,8 +46,9 @@ Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_
 void Emitter::takeDiced(const std::function<bool(const geometry::Shape&)>& seenThrough) {
     facets_.clear();
     triangles_.clear();
+    turns_.clear();
     for (Entry& e : entries_) {
-        e.facets = e.triangles = -1;
+        e.facets = e.triangles = e.turn = -1;
         if (!EmitterFacets::has(*e.shape)) {
             e.share = e.shape->area();
         } else {
@@ -62,6 +63,13 @@ void Emitter::takeDiced(const std::function<bool(const geometry::Shape&)>& seenT
         e.sphere = wholeSphere(*e.shape, e.centre, e.radius);
         e.inner = e.sphere && scene::solidTakenAway(e.shape->attributes());
         e.through = e.sphere && seenThrough && seenThrough(*e.shape);
+        // Through a transparent front, and in solids, the far side may be what is seen.
+        const bool seen = seenThrough && seenThrough(*e.shape);
+        const bool alone = !e.sphere && e.facets < 0 && !seen && scene::solidPath(e.shape->attributes()).empty();
+        if (alone && HalfTurn::has(*e.shape)) {
+            e.turn = int(turns_.size());
+            turns_.emplace_back(*e.shape);
+        }
     }
     weigh();
     shinesTo(Shines::Both);
@@ -88,6 +96,8 @@ void Emitter::weigh() {
 void Emitter::shinesTo(Shines to) {
     for (Entry& e : entries_) {
         e.front = {};
+        if (e.turn >= 0)
+            turns_[size_t(e.turn)].shinesTo(e.shape->oneSided() || to == Shines::Front ? 1 : to == Shines::Back ? -1 : 0);
         if (to == Shines::Both && !e.shape->oneSided()) continue;
         e.front = normalsOf(*e.shape);
         if (to == Shines::Back && !e.shape->oneSided()) e.front = e.front.opposite();
@@ -131,6 +141,7 @@ float Emitter::areaPdf(const Entry& e, double share, const geometry::SurfacePoin
     Vec3 d = intersectsAt(p) - from;
     float d2 = dot(d, d), cosine = std::fabs(dot(d, intersectsNormal(p))) / std::sqrt(d2);
     if (!(d2 > 0) || !(cosine > 1e-7f)) return 0;
+    if (e.turn >= 0) share *= turns_[size_t(e.turn)].factor(p, from);
     return float(share * density(e, p) * e.shape->turnedDensity(p, from) * d2 / cosine);
 }
 
@@ -197,6 +208,8 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample&
     } else if (!place(e, from, u, time, point, needs)) {
         return false;
     }
+    if (e.turn >= 0 && turns_[size_t(e.turn)].turns(point, from, u.x))
+        place(e, from, {HalfTurn::turned(u.x), u.y}, time, point, needs);
     Vec3 d = intersectsAt(point) - from;
     out.distance = length(d);
     if (!(out.distance > 0)) return false;

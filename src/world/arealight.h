@@ -1,6 +1,7 @@
 // Light samples on emitters, and the density of a given hit (docs/design/light-transport.md).
 #pragma once
 #include "world/emitterfacets.h"
+#include "world/halfturn.h"
 #include "world/trianglelamp.h"
 #include <functional>
 #include <span>
@@ -10,7 +11,8 @@ namespace alpenglow::world {
 
 /// The geometry of one area light. A shape is chosen in proportion to area; among more than limits::kLightsSampled shapes in
 /// proportion to area over squared distance (LightChooser). Complete spheres that are spheres in camera space, and a few near
-/// triangles, are sampled by solid angle; diced shapes by the area of their facets; all others by area.
+/// triangles, are sampled by solid angle; diced shapes by the area of their facets; other complete quadrics by area on the half
+/// that faces the lit point (HalfTurn); all others by area.
 class Emitter {
 public:
     /// visibility: kinds of rays (accel::Visibility) that can hit each shape; empty: all.
@@ -82,6 +84,7 @@ private:
         uint32_t visibility = ~0u;
         int facets = -1;    ///< index in facets_; -1: rays hit the surface itself
         int triangles = -1; ///< index in triangles_; -1: not sampled by solid angle
+        int turn = -1;      ///< index in turns_; -1: samples are not turned toward the lit point
         Cone front;         ///< bound of the directions in which light leaves
     };
     /// A complete sphere seen from outside: 1 - cos of its angular radius. Returns false from inside.
@@ -104,6 +107,7 @@ private:
     std::vector<Entry> entries_;
     std::vector<EmitterFacets> facets_;
     std::vector<TriangleLamp> triangles_;
+    std::vector<HalfTurn> turns_;
     std::unordered_map<const geometry::Shape*, int> entryOf_;
     std::vector<FlatEmitter> flat_; ///< by entry; empty if some shape is not flat, or there are many
     double area_ = 0;

@@ -31,6 +31,7 @@ struct Case {
     Primitives primitives;
     Matrix toCamera;
     bool solidAngle = false; ///< sampled by solid angle where seen from outside: the near side only
+    scene::Attributes attributes = {};
 };
 
 std::shared_ptr<scene::Primitive> polyhedron() {
@@ -91,7 +92,7 @@ struct Made {
     explicit Made(const Case& c) {
         std::vector<const geometry::Shape*> plain;
         for (const auto& p : c.primitives)
-            if (auto s = build(p, c.toCamera, diagnostics)) shapes.push_back(s);
+            if (auto s = build(p, c.toCamera, diagnostics, c.attributes)) shapes.push_back(s);
         geometry::DiceOptions options;
         options.camera = {true, 2000};
         geometry::diceShapes(shapes, options, diagnostics);
@@ -258,6 +259,33 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
         expectSameCells(drawn, counted, n, whole, what);
     }
 }
+/// A tube of radius r seen from a distance d of its axis shows the fraction acos(r / d) / pi of its points. Half a turn takes
+/// none of them to another, so they get what the points opposite would have, all of it or three quarters.
+TEST(Emitter, TubesAreSampledOnTheSideThatIsSeen) {
+    const Case tube{"tube", {quadric("Cylinder", {.6f, -1, 1, 360})}, rotateMatrix(50, 0, 0, 1) * translateMatrix(0, 0, 4)};
+    const Vec3 from(1.2f, 0, 2.4f); // 1.2 from the axis, that of z
+    const double seen = std::acos(.6 / 1.2) / kPi;
+    for (const bool inside : {false, true}) // where the normals point
+        for (const auto to : {Emitter::Shines::Both, inside ? Emitter::Shines::Back : Emitter::Shines::Front}) {
+            Case c = tube;
+            c.attributes.inside = inside;
+            Made m(c);
+            m.emitter->shinesTo(to);
+            std::mt19937 rng(unsigned(seedBase()) + 5);
+            std::uniform_real_distribution<float> one(0, 0x1.fffffep-1f);
+            const int n = samples(20'000, 200'000);
+            int facing = 0;
+            for (int i = 0; i < n; ++i) {
+                Emitter::Sample s;
+                geometry::SurfacePoint p;
+                ASSERT_TRUE(draw(*m.emitter, from, {one(rng), one(rng)}, 0, s, p));
+                facing += dot(Vec3(p.P.x, p.P.y, 0), s.direction) < 0;
+            }
+            const double want = seen * (to == Emitter::Shines::Both ? 1.75 : 2);
+            EXPECT_NEAR(facing, n * want, 6 * std::sqrt(n * want * (1 - want))) << inside << int(to);
+        }
+}
+
 INSTANTIATE_TEST_SUITE_P(Primitives, EmitterT1, ::testing::Range(0, int(cases().size())));
 
 // A parametric surface is drawn uniformly over (u, v): chi^2 over 10 x 20 cells, +-5 % found at 1e5 draws.

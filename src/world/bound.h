@@ -178,7 +178,7 @@ struct SurfaceBinding {
     BoundKernel surfaceV; ///< only if batches need it: several bindings, or different spaces
     BoundKernel displacementS;
     Medium atmosphere;             ///< null shader: none
-    int inside = -1, outside = -1; ///< WorldImpl::media_ of Interior and Exterior; -1: none
+    int inside = -1, outside = -1; ///< WorldImpl::media() of Interior and Exterior; -1: none
     float insidePriority = 0, outsidePriority = 0;
     /// Whether the surface is no boundary where a ray is: a medium of higher priority than its interior is on both sides.
     bool overruled(const shading::Media* at) const {

@@ -30,6 +30,7 @@ public:
 /// A lightsource() query to a light.
 struct LightParameter {
     std::optional<ShaderValue> value; ///< value set by the scene; nothing: the light has no such parameter
+    /// Consecutive components of one value.
     struct Part {
         int from, components;
         size_t to;
@@ -48,6 +49,7 @@ struct ServiceMemo {
     std::unordered_map<const scene::Attributes*, std::pair<float, float>> shadowBias; ///< Attribute "shadow": bias0, bias1
 };
 
+/// The services of one thread, with its caches.
 class Services {
 public:
     /// `tracer`: null if there are no lights.
@@ -56,7 +58,9 @@ public:
     void service(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     // illuminance loops, as in rsl::KernelCall (lightloop.cpp).
     int32_t lightBegin(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* rows);
+    /// Ends the innermost loop.
     void lightEnd(KernelRun&, int first, int lanes);
+    /// Evaluates the light of an iteration for the lanes of a mask: nine rows L, Cl, Ol. Returns the lit lanes.
     uint64_t lightFetch(KernelRun&, int light, int first, uint64_t mask, int lanes, float* out);
     /// Stores the AOV values of a light that ran for a point; `values`: BoundLight::values. Defined in lightsamples.cpp.
     void keepChannels(KernelRun&, const BoundLight&, int point, const float* values);
@@ -75,7 +79,9 @@ public:
 
     // Shared by services in other files.
     const WorldImpl& world() const { return *world_; }
+    /// The cache for answers in other files.
     ServiceMemo& memo() { return memo_; }
+    /// The state of the loops of a strip, which begins at this point.
     LightLoop& lightLoop(KernelRun&, int first, int lanes);
     /// The map of an interned name; takes a lock only the first time. `place`: returns the SourcePlace of the call.
     template <class Place> texture::Handle mapOfName(int32_t id, Place&& place) {
@@ -125,6 +131,7 @@ public:
         if (fresh && id) at->second = world_->clouds().octree(rsl::internedString(id), light, shear, call.place());
         return at->second.get();
     }
+    /// Frees sheared octrees where there are many; call when none is in use.
     void trimOctrees() {
         if (shearedOctrees_.size() > limits::kShearedOctrees) shearedOctrees_.clear();
     }

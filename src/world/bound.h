@@ -19,6 +19,7 @@ struct ShaderInstance {
     Matrix toCurrent;                                   ///< at shutter open
     std::shared_ptr<const shading::MovingSpace> moving; ///< null: shader space does not move
     shading::InstanceView view() const { return {&parameters, &toCurrent, moving.get()}; }
+    /// Shader space to current at a fraction of the open shutter.
     Matrix toCurrentAt(float shutter) const { return moving ? moving->at(shutter) : toCurrent; }
     SourcePlace place;
     bool differences = false; ///< derivatives by differences (rsl/kernel.h)
@@ -28,12 +29,14 @@ using InstanceRef = std::shared_ptr<const ShaderInstance>;
 /// Outputs of point lights: radius of the disk that casts their shadows, and number of shadow rays to it.
 inline constexpr char kShadowRadius[] = "__shadowradius", kShadowSamples[] = "__shadowsamples";
 
+/// Where a light comes from, by its illuminate and solar statements and its geometry.
 enum class LightKind : uint8_t { Ambient, Point, Distant, Environment, Area };
 
 /// Attribute "light" "samplingstrategy": whether illuminance loops or trace() see an area light or sky. Lighting shadeops see
 /// all.
 enum class LightStrategy : uint8_t { Both, Illuminance, Trace };
 
+/// One block of a light shader: its kernel, its geometry, and what sampling needs to know of it.
 struct BoundLight {
     LightKind kind = LightKind::Ambient;
     InstanceRef instance;
@@ -200,10 +203,12 @@ struct SurfaceBinding {
     bool explicitSurface = true;
     Opacity opacity;                         ///< by attributes
     Opacity primitiveOpacity, shaderOpacity; ///< for rays with a "hitmode"; set only if there are any
+    /// The attenuation of rays with this "hitmode".
     const Opacity& opacityFor(shading::HitMode m) const {
         return m == shading::HitMode::Default ? opacity : m == shading::HitMode::Primitive ? primitiveOpacity : shaderOpacity;
     }
     uint32_t primitiveFor = 0; ///< visibility bits of rays that see the primitive's own Color and Opacity (Attribute "shade")
+    /// Whether such a ray sees the primitive's Color and Opacity instead of its shaders.
     bool asPrimitive(shading::HitMode m, RayType t) const {
         return m == shading::HitMode::Primitive || (m == shading::HitMode::Default && (primitiveFor & visibilityBit(t)));
     }

@@ -178,7 +178,9 @@ public:
         bool ofAll = false;
     };
     const std::vector<LightList>& lightLists() const { return lightLists_; } ///< by SurfaceBinding::lightList
+    /// The sampled lights of a list; with `ofAll` those of all lists.
     const std::vector<int>& sampledOf(const LightList& l) const { return l.ofAll ? allSampled_ : l.sampled; }
+    /// The chooser over them; empty: every light is sampled.
     const LightChooser& chooserOf(const LightList& l) const { return l.ofAll ? allChooser_ : l.chooser; }
     /// The chooser for a vertex after so many bounces; empty: every light is sampled.
     const LightChooser& chooserAt(const LightList& l, int bounces) const {

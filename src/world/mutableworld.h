@@ -15,8 +15,12 @@ public:
     void keepSpaces(std::span<const rsl::InputName> spaces);
 
     // Shaders and kernels
+    /// The shader of a request with its parameters; null after an error. anyKind: the file may hold another kind than the request
+    /// asks for.
     InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
+    /// Takes the values of a request, converted to current space.
     void setParameters(ShaderInstance&, const scene::ShaderCall&, Diagnostics&);
+    /// Sets all parameters: these values, else defaults, which may be expressions.
     void takeValues(ShaderInstance&, const std::vector<rsl::ParameterValue>& given, Diagnostics&);
     /// Sets handles among these parameters to null that name neither one of `bound` nor a light, and reports an error with its
     /// place.
@@ -26,7 +30,9 @@ public:
     /// with methods that it calls. Returns the instance itself if it uses no co-shaders.
     InstanceRef withCoShaders(const InstanceRef&, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics&,
                               const scene::LightSet& lights = {});
+    /// A shipped shader by name; null if it cannot be compiled (reported).
     InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
+    /// What kernel() asks the compiler for.
     rsl::KernelOptions kernelOptions(const ShaderInstance&, const std::vector<std::string>& outputs,
                                      const std::vector<std::string>& varying, bool mixed, bool path) const;
     /// Compiles and binds a kernel; null if it cannot be compiled (reported). Joins its needs to needs().
@@ -55,7 +61,9 @@ public:
                              const std::vector<std::string>& varying, Diagnostics&);
     /// Makes the meshes that rays hit.
     void diceShapes(Diagnostics&);
+    /// Whether dicing has to displace the shape.
     bool movesPoints(const SurfaceBinding&, const geometry::Shape&) const;
+    /// Moves the points of a grid by the displacement shader, or by a surface shader that assigns P.
     void displaceGrid(const SurfaceBinding&, const geometry::Shape&, geometry::DiceGrid&, Diagnostics&) const;
     /// Whether no shader or light sends rays or needs points of complete surfaces, so that only camera rays exist. Call after
     /// binding surfaces.
@@ -64,6 +72,7 @@ public:
     void setPointNeeds();
     /// Sorts shapes by opacity; `visibility`: kinds of rays that hit a shape, by shape.
     void sortByOpacity(std::span<const uint32_t> visibility);
+    /// Fills shadowVisibility(); arguments as above.
     void findShadowVisibility(std::span<const uint32_t> visibility);
     /// Attenuation of shadow rays by a shape. `mode`: "shader", "primitive", "opaque" or "Os"; "": by attributes.
     Opacity opacityOf(const SurfaceBinding&, const geometry::Shape&, std::string mode, const std::vector<std::string>& varying,
@@ -80,22 +89,28 @@ public:
     void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);
     /// photons: with the outputs of generatePhoton().
     BoundKernel lightKernel(const ShaderInstance&, bool photons, Diagnostics&);
+    /// Compiles the kernel of the light's generatePhoton(), if it has one.
     void bindPhotons(BoundLight&, Diagnostics&);
+    /// Finds the outputs of the kernel of one block of a shader.
     void bindLightOutputs(BoundLight&, int block);
     /// Adds to a list of the scene's lights the further blocks of their shaders.
     scene::LightSet withParts(const scene::LightSet& lights) const;
+    /// Fills shining().
     void findShining();
     /// Builds the tables of skies (BoundLight::sky). Call before binding surfaces.
     void tabulateSkies(Evaluator&);
     /// Builds light kernels for the strings that loops of surfaces send. Call after all surfaces are bound.
     void bindSentStrings(Diagnostics&);
+    /// Fills lightTraces().
     void countLightTraces();
     /// Estimates the brightness of lights, and finds area lights whose Cl is an intensity. Call after everything else.
     void measureLights(Evaluator&, Diagnostics&);
     void placeLights(Evaluator&); ///< finds positions of lights for sampling in media; call last
+    /// Whether points on the light can be sampled.
     bool getsSamples(const BoundLight&) const;
     /// Makes the choosers of light lists and, if there are many lights, light groups; after measureLights().
     void makeChoosers(Diagnostics&);
+    /// Fills lightGroups().
     void groupLights(Diagnostics&);
 
     /// Fills outputWidths(): number of components of each AOV in the shaders of the frame.

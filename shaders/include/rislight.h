@@ -46,7 +46,7 @@ vector risLatLong(vector w;) { return vector(xcomp(w), -ycomp(w), zcomp(w)); }
 
 /* What every light has: filters and a profile as the renderer gives them (src/ri/lightfilters.h). Photometry is that of iesProfile, 1 where it
    is brightest; iesProfileScale s stretches its angles from the axis by 1 + s. */
-#define RIS_SHAPED uniform float lightFilters[] = {}; string lightFilterMaps[] = {}; \
+#define RIS_SHAPED uniform float lightFilters[] = {}; string lightFilterMaps[] = {}, lightFilterLinks[] = {}; \
     string iesProfile = ""; uniform float lightProfile[] = {}; float iesProfileScale = 0
 
 /* Where x lies among n angles from at on, with wrong ends held: the index below, and how far it is to the next. */
@@ -163,8 +163,9 @@ float risFilter(uniform float f[]; uniform float at; string map; point a, b; out
     }
     return v;
 }
-/* Light Cl from one point to another, both in current space, behind all filters. */
-color risFiltered(color light; uniform float f[]; string maps[]; point from, to;) {
+/* Light Cl from one point to another, both in current space, behind all filters that act on what is lit: each link asks the renderer whether one does;
+   without links all do. */
+color risFiltered(color light; uniform float f[]; string maps[], links[]; point from, to;) {
     color out = light, most = 0, least = 1, kept = 1;
     uniform float i, maxima = 0, screens = 0;
     for (i = 0; i < arraylength(maps); i += 1) {
@@ -175,16 +176,19 @@ color risFiltered(color light; uniform float f[]; string maps[]; point from, to;
         float v = risFilter(f, at, maps[i], transform(m, transform("world", from)), transform(m, transform("world", to)), tint) * f[at + 18];
         float gain = f[at + 20] * pow(2, f[at + 21]);
         if (f[at + 19] == 1) gain = 1 / max(gain, 1e-6);
+        float acts = 1;
+        if (arraylength(links) > 0) surface(links[i], acts);
+        v *= acts;
         color effect = mix(color(1), gain * tint, color(v));
         if (f[at + 22] != 1)
             out = mix(out, mix(color(.2126 * comp(out, 0) + .7152 * comp(out, 1) + .0722 * comp(out, 2)), out, color(f[at + 22])), color(v));
         if (mode == 0) out *= effect;
-        if (mode == 1) {
+        if (mode == 1 && acts != 0) {
             most = (maxima == 0) ? effect : max(most, effect);
             maxima = 1;
         }
         if (mode == 2) least = min(least, effect);
-        if (mode == 3) {
+        if (mode == 3 && acts != 0) {
             kept *= color(1) - effect;
             screens = 1;
         }

@@ -18,6 +18,6 @@ light PxrDiskLight(float intensity = 1, exposure = 0; color lightColor = 1; floa
     illuminate(P, N, PI / 2) {
         float cosine = normalize(L) . normalize(N);
         Cl = radiance * risShape(cosine, emissionFocus, emissionFocusTint, coneAngle, coneSoftness);
-        Cl = risFiltered(Cl * risProfile(lightProfile, iesProfileScale, vtransform("shader", L)), lightFilters, lightFilterMaps, P, Ps);
+        Cl = risFiltered(Cl * risProfile(lightProfile, iesProfileScale, vtransform("shader", L)), lightFilters, lightFilterMaps, lightFilterLinks, P, Ps);
     }
 }

@@ -10,5 +10,5 @@ light PxrDistantLight(float intensity = 1, exposure = 0; color lightColor = 1; f
     color radiance = risRadiance(intensity, exposure, lightColor, enableTemperature, temperature);
     if (areaNormalize != 0) radiance /= PI * sin(half) * sin(half);
     solar(vector "shader" (0, 0, 1), half)
-        Cl = risFiltered(4 * low * low * radiance, lightFilters, lightFilterMaps, Ps - 1e5 * normalize(L), Ps); /* 2 (1 - cos half): a cone's Cl is what all of it brings, over pi */
+        Cl = risFiltered(4 * low * low * radiance, lightFilters, lightFilterMaps, lightFilterLinks, Ps - 1e5 * normalize(L), Ps); /* 2 (1 - cos half): a cone's Cl is what all of it brings, over pi */
 }

@@ -15,6 +15,6 @@ light PxrDomeLight(float intensity = 1, exposure = 0; color lightColor = 1; floa
     solar() {
         Cl = radiance;
         if (there != 0) Cl *= risMapped(color environment(map, risLatLong(vtransform("shader", -L))), colorMapGamma, colorMapSaturation);
-        Cl = risFiltered(Cl, lightFilters, lightFilterMaps, Ps - 1e5 * normalize(L), Ps);
+        Cl = risFiltered(Cl, lightFilters, lightFilterMaps, lightFilterLinks, Ps - 1e5 * normalize(L), Ps);
     }
 }

@@ -45,7 +45,7 @@ light PxrEnvDayLight(float intensity = 1, exposure = 0; vector sunDirection = ve
             Cl = scale * day1 * skyTint * color(max(0, 3.2404542 * X - 1.5371385 * Y - .4985314 * Z),
                 max(0, -.9692660 * X + 1.8760108 * Y + .0415560 * Z), max(0, .0556434 * X - .2040259 * Y + 1.0572252 * Z));
         }
-        Cl = risFiltered(Cl, lightFilters, lightFilterMaps, Ps - 1e5 * normalize(L), Ps);
+        Cl = risFiltered(Cl, lightFilters, lightFilterMaps, lightFilterLinks, Ps - 1e5 * normalize(L), Ps);
     }
     /* what comes through the air at .61, .55 and .465 micrometres: Rayleigh and aerosol */
     float m = 1 / (cs + .15 * pow(93.885 - degrees(ts), -1.253)), beta = .04608 * T - .04586;
@@ -53,6 +53,6 @@ light PxrEnvDayLight(float intensity = 1, exposure = 0; vector sunDirection = ve
                           exp(-m * (.008735 * pow(.465, -4.08) + beta * pow(.465, -1.3))));
     vector axis = vtransform("shader", "current", -toSun);
     solar(axis, radians(.265 * max(sunSize, .05)))
-        Cl = risFiltered(intensity * pow(2, exposure) * 1.28 * (zcomp(toSun) > 0 ? 1 : 0) * through * sunTint, lightFilters, lightFilterMaps,
+        Cl = risFiltered(intensity * pow(2, exposure) * 1.28 * (zcomp(toSun) > 0 ? 1 : 0) * through * sunTint, lightFilters, lightFilterMaps, lightFilterLinks,
                          Ps - 1e5 * normalize(L), Ps); /* 128 klux outside of the air */
 }

@@ -23,6 +23,6 @@ light PxrPortalLight(float intensity = 1, exposure = 0; color lightColor = 1; fl
             }
             Cl *= risMapped(color environment(domeColorMap, risLatLong(w)), colorMapGamma, colorMapSaturation);
         }
-        Cl = risFiltered(Cl, lightFilters, lightFilterMaps, P, Ps);
+        Cl = risFiltered(Cl, lightFilters, lightFilterMaps, lightFilterLinks, P, Ps);
     }
 }

@@ -20,6 +20,6 @@ light PxrRectLight(float intensity = 1, exposure = 0; color lightColor = 1; floa
         float cosine = normalize(L) . normalize(N);
         Cl = radiance * risShape(cosine, emissionFocus, emissionFocusTint, coneAngle, coneSoftness);
         if (there != 0) Cl *= risMapped(color texture(lightColorMap, s, 1 - t), colorMapGamma, colorMapSaturation);
-        Cl = risFiltered(Cl * risProfile(lightProfile, iesProfileScale, vtransform("shader", L)), lightFilters, lightFilterMaps, P, Ps);
+        Cl = risFiltered(Cl * risProfile(lightProfile, iesProfileScale, vtransform("shader", L)), lightFilters, lightFilterMaps, lightFilterLinks, P, Ps);
     }
 }

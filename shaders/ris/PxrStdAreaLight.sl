@@ -19,6 +19,6 @@ light PxrStdAreaLight(float intensity = 1, exposure = 0; color lightColor = 1; f
     illuminate(P, N, PI / 2) {
         float cosine = normalize(L) . normalize(N);
         Cl = radiance * risShape(cosine, emissionFocus, emissionFocusTint, coneAngle, coneSoftness);
-        Cl = risFiltered(Cl * risProfile(lightProfile, iesProfileScale, vtransform("shader", L)), lightFilters, lightFilterMaps, P, Ps);
+        Cl = risFiltered(Cl * risProfile(lightProfile, iesProfileScale, vtransform("shader", L)), lightFilters, lightFilterMaps, lightFilterLinks, P, Ps);
     }
 }

@@ -118,7 +118,10 @@ constexpr OptionDescription kAttributes[] = {
     {"light:units", "string", "\"radiance\" under path, else by the shader", "\"samples\"", Used,
      "What an area light's Cl is: \"radiance\", or \"samples\": its geometry gives the mean of Cl over samples, as BMRT and "
      "3Delight had it."},
-    {"lightfilter:subset", "string", "", "", Ignored, "PRMan; a filter holds for all that its lights illuminate"},
+    {"lightfilter:excludesubset", "string", "\"\"", "\"rods\"", Used,
+     "Light filters that do not act on what follows: groups of linkingGroups, or handles.", "\"\""},
+    {"lightfilter:subset", "string", "\"\"", "\"rods\"", Used,
+     "Light filters with linkingGroups act where this names one of their groups; those without groups act everywhere.", "\"\""},
     {"lighting:excludesubset", "string", "\"\"", "\"rim\"", Used,
      "Lights of RIS that do not illuminate what follows, as lighting:subset names them.", "\"\""},
     {"lighting:mute", "int", "0", "1", Used, "1: a Light that follows is off.", "0"},

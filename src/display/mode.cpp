@@ -85,9 +85,12 @@ void nameChannels(ModeVariable& v) {
         }
 }
 
-/// rgb, rgba, rgbz, rgbaz, a, z, az.
-bool standardMode(const std::string& m, std::vector<ModeVariable>& out) {
+/// rgb, rgba, rgbz, rgbaz, a, z, az; the first four in capitals, too.
+bool standardMode(const std::string& given, std::vector<ModeVariable>& out) {
     static constexpr const char* modes[] = {"rgb", "rgba", "rgbz", "rgbaz", "a", "z", "az"};
+    std::string m = given;
+    if (given.starts_with("RGB")) // a capital A or Z alone may be a variable
+        for (char& c : m) c = char(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c);
     if (std::find(std::begin(modes), std::end(modes), m) == std::end(modes)) return false;
     if (m.rfind("rgb", 0) == 0) out.push_back({"Ci", Type::Color, 0, true, {"r", "g", "b"}});
     if (m.find('a') != std::string::npos) out.push_back({"alpha", Type::Float, 0, true, {"a"}});

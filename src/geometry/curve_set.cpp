@@ -128,7 +128,7 @@ bool CurveSet::layOut(const ShapeSource& s, Diagnostics& diag) {
     const scene::Primitive& p = *s.primitive;
     const auto segmentsOf = [&](uint32_t n) -> uint32_t {
         if (linear_) return n < 2 ? 0 : periodic_ ? n : n - 1;
-        return n < 4 ? 0 : periodic_ ? n / step_ : (n - 4) / step_ + 1;
+        return periodic_ ? n / step_ : n < 4 ? 0 : (n - 4) / step_ + 1;
     };
     for (int n : p.ints)
         if (const uint32_t k = segmentsOf(uint32_t(n))) varying_ += corners(k);

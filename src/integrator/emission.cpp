@@ -1,5 +1,6 @@
 // The distribution of photons over lights, and their random numbers.
 #include "integrator/emission.h"
+#include "integrator/integrator.h"
 #include "integrator/lightkernels.h"
 #include "world/photonattributes.h"
 #include <algorithm>
@@ -12,6 +13,11 @@ enum Use : uint32_t { kUseLight = 1u << 24, kUsePlace, kUseWay, kUseCone, kUseCh
 constexpr int kProbes = 64;       ///< samples for measuring the power of a light
 constexpr double kUnlearned = .1; ///< fraction of photons for bins where nothing was found, so that learning stays complete
 
+/// Whether rays find light of `l`, and photons of it can therefore guide them. Uniform skies need no guide.
+bool guides(const BoundLight& l) {
+    return l.kernel && (l.kind == LightKind::Area ? !l.mean : l.kind == LightKind::Environment && l.sky);
+}
+
 bool mayEmit(const BoundLight& l, bool sky) {
     if (l.kernel && l.photons) return true;
     if (!l.kernel || l.kind == LightKind::Ambient || (l.kind == LightKind::Environment && !sky)) return false;
@@ -19,7 +25,7 @@ bool mayEmit(const BoundLight& l, bool sky) {
 }
 } // namespace
 
-EmissionPlan::EmissionPlan(LightKernels& lights, bool all, bool sky) : world_(lights.world()) {
+EmissionPlan::EmissionPlan(LightKernels& lights, const PhotonUse& use) : world_(lights.world()) {
     if (!world_.canTrace()) return;
     const geometry::Bounds box = world_.bounds();
     centre = (box.lo + box.hi) * 0.5f;
@@ -29,8 +35,10 @@ EmissionPlan::EmissionPlan(LightKernels& lights, bool all, bool sky) : world_(li
     const bool some = std::any_of(world_.lights().begin(), world_.lights().end(), says);
     for (size_t i = 0; i < world_.lights().size(); ++i) {
         const BoundLight& l = world_.lights()[i];
-        if (!mayEmit(l, sky || says(l)) || !emitsPhotons(l).value_or(all && !some)) continue;
+        if (!mayEmit(l, use.sky || says(l)) || !emitsPhotons(l).value_or(use.all && !some)) continue;
+        if (use.learns && !guides(l)) continue;
         Light light;
+        light.bright = use.learns && l.kind == LightKind::Environment;
         light.light = &l;
         light.number = int(i);
         if (l.kind == LightKind::Point && !l.photons && !findPlace(lights, light)) continue;

@@ -4,6 +4,7 @@
 #include "bsdf/sampling.h"
 #include "integrator/emission.h"
 #include "integrator/lightkernels.h"
+#include "world/skysampler.h"
 
 namespace alpenglow::integrator {
 
@@ -76,6 +77,17 @@ ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const E
         if (l.light->cone) p.Ci = coneNumbers(s.drawn.cone);
     }
     return p;
+}
+
+/// From a bright direction of a sky. Dimmer directions carry no power: lobes find them without a guide. `way`, which emission
+/// learns, is the place, because bright directions are few.
+void startBright(const EmissionPlan& plan, const EmissionPlan::Light& l, EmissionStart& s) {
+    Vec3 w;
+    float density = 0;
+    if (!l.light->sky->sampleBright(s.drawn.place, w, density)) return;
+    s.dir = -w;
+    s.origin = onDisc(plan, s.dir, s.drawn.way);
+    s.factor = kPiF * plan.radius * plan.radius / density;
 }
 
 /// From a distant light: its shader gives the direction.
@@ -162,6 +174,10 @@ void startPhotons(LightKernels& lights, const EmissionPlan& plan, const Emission
             s.factor = 4 * kPiF * kPiF; // power: pi Cl d^2 per steradian
             break;
         case LightKind::Environment:
+            if (l.bright) {
+                startBright(plan, l, s);
+                break;
+            }
             s.dir = evenDirection(s.drawn.way);
             s.origin = onDisc(plan, s.dir, s.drawn.place);
             s.factor = 4 * kPiF * kPiF * plan.radius * plan.radius;

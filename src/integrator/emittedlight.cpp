@@ -14,7 +14,7 @@
 #include "integrator/raystore.h"
 #include "integrator/shadowrays.h"
 #include "integrator/stageset.h"
-#include "world/skytable.h"
+#include "world/skysampler.h"
 #include <algorithm>
 
 namespace alpenglow::integrator {

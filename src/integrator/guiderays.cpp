@@ -18,13 +18,25 @@ GuideRays::GuideRays(const StageSet& s) : Stage(s.context), store_(s.store) {
     for (const SurfaceBinding& b : world_.bindings()) ends_.push_back(!mirrors(b.surfaceS));
 }
 
-GuideRays::Aim GuideRays::aimAt(const Vec3& P, const Vec3& n, const Vec3& in, float brings) const {
-    Aim a;
-    if (!guide()->maySend(brings)) return a;
-    a.side = SurfaceTree::sideOf(dot(n, in) > 0 ? -n : n);
-    a.cell = guide()->find(P, a.side);
-    if (a.cell) a.code = guide()->codeFor(*a.cell, brings);
-    return a;
+void GuideRays::aim(std::span<const Query> queries, Aim* aims) const {
+    const CausticGuide& g = *guide();
+    SurfaceTree::Point points[SurfaceTree::kTogether];
+    const CausticGuide::Cell* cells[SurfaceTree::kTogether];
+    size_t of[SurfaceTree::kTogether], count = 0;
+    for (size_t i = 0; i < queries.size(); ++i) {
+        const Query& q = queries[i];
+        aims[i] = {};
+        if (!g.maySend(q.brings)) continue;
+        points[count] = {q.P, SurfaceTree::sideOf(dot(q.n, q.in) > 0 ? -q.n : q.n)};
+        of[count++] = i;
+    }
+    g.find({points, count}, cells);
+    for (size_t k = 0; k < count; ++k) {
+        Aim& a = aims[of[k]];
+        a.side = points[k].side;
+        a.cell = cells[k];
+        if (a.cell) a.code = g.codeFor(*a.cell, queries[of[k]].brings);
+    }
 }
 
 /// A uniform number for a ray's vertex by hash; its tenths are equidistributed over the samples of a pixel.

@@ -29,9 +29,12 @@ public:
             return code ? uint8_t(shading::kTrailSpread | code * shading::kTrailGuide | side * shading::kTrailSide) : 0;
         }
     };
-    /// P: the point; n: unit surface normal; in: unit direction of the incoming ray; brings: luminance that the eye receives
-    /// through the lobe under uniform light of radiance 1.
-    Aim aimAt(const Vec3& P, const Vec3& n, const Vec3& in, float brings) const;
+    struct Query {
+        Vec3 P, n, in; ///< the point; unit surface normal; unit direction of the incoming ray
+        float brings;  ///< luminance that the eye receives through the lobe under uniform light of radiance 1
+    };
+    /// At most SurfaceTree::kTogether queries.
+    void aim(std::span<const Query>, Aim*) const;
 
     /// A lobe with a ray of its own of density `pdf`, followed with probability `chosen`.
     struct Lobe {

@@ -8,6 +8,8 @@
 
 namespace alpenglow::integrator {
 
+static_assert(kBlock <= int(SurfaceTree::kTogether));
+
 GuideScatter::GuideScatter(const StageSet& s, const VertexStages& v) : VertexStage(s, v), guide_(s.guide), media_(s.media) {}
 
 void GuideScatter::mark(size_t block, const BatchContext& c) {
@@ -18,9 +20,10 @@ void GuideScatter::mark(size_t block, const BatchContext& c) {
         v.guided |= Lanes(c.rays[i].guided()) << i % kBlock;
 }
 
-GuideScatter::Point GuideScatter::pointOf(size_t block, int i, const BatchContext& c) const {
+/// The call site of the lobe that reflects most, and what the guide is asked; -1: none.
+int GuideScatter::siteOf(size_t block, int i, const BatchContext& c, GuideRays::Query& q) const {
     const VertexBlock& v = v_.vertices[block];
-    Point found;
+    int site = -1;
     float most = 0;
     const auto weightOf = [&](const LobeBlock& l) { return Color(l.weight[0][i], l.weight[1][i], l.weight[2][i]); };
     for (size_t k = 0; k < v_.count; ++k) {
@@ -32,15 +35,41 @@ GuideScatter::Point GuideScatter::pointOf(size_t block, int i, const BatchContex
         if (!(v_.indirectOf(s, point) > 0) || s.raysAt(point).gathersPhotons) continue;
         if (options && (options->fade.fades() || options->base > 0)) continue;
         const float gives = luminance(absolute(weightOf(l))) * l.lobe[kRowAlbedo][i];
-        if (gives > most) found.site = int(k), most = gives;
+        if (gives > most) site = int(k), most = gives;
     }
-    if (found.site < 0) return found;
-    const LobeBlock& l = v_.sites[size_t(found.site)].lobes[block];
+    if (site < 0) return site;
+    const LobeBlock& l = v_.sites[size_t(site)].lobes[block];
     const PathRay& from = c.rays[block * kBlock + size_t(i)];
-    const float brings = luminance(absolute(from.weight * weightOf(l))) * l.lobe[kRowAlbedo][i];
-    const Vec3 P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
-    found.aim = guide_.aimAt(P, n, from.dir, brings);
-    return found;
+    q = {{v.P[0][i], v.P[1][i], v.P[2][i]},
+         {v.n[0][i], v.n[1][i], v.n[2][i]},
+         from.dir,
+         luminance(absolute(from.weight * weightOf(l))) * l.lobe[kRowAlbedo][i]};
+    return site;
+}
+
+/// Directions of the guide rays of some points of a block; returns the points that have one.
+Lanes GuideScatter::draw(size_t block, Lanes left, const BatchContext& c) {
+    GuideRays::Query queries[kBlock];
+    GuideRays::Aim aims[kBlock];
+    int lane[kBlock];
+    size_t count = 0;
+    for (; left; left &= left - 1) {
+        const int i = std::countr_zero(left);
+        points_[block * kBlock + size_t(i)].site = siteOf(block, i, c, queries[count]);
+        lane[count] = i;
+        count += points_[block * kBlock + size_t(i)].site >= 0;
+    }
+    guide_.aim({queries, count}, aims);
+    Lanes drawn = 0;
+    for (size_t k = 0; k < count; ++k) {
+        const size_t at = block * kBlock + size_t(lane[k]);
+        points_[at].aim = aims[k];
+        Vec3 w;
+        if (!guide_.draws(c.rays[at], aims[k], queries[k].P, w)) continue;
+        for (int q = 0; q < 3; ++q) w_[q][lane[k]] = w[q];
+        drawn |= 1u << lane[k];
+    }
+    return drawn;
 }
 
 void GuideScatter::run(BatchContext& c, Sched& sched) {
@@ -48,16 +77,7 @@ void GuideScatter::run(BatchContext& c, Sched& sched) {
     points_.assign(v_.blocks * kBlock, {});
     for (size_t block = 0; block < v_.blocks; ++block) {
         const VertexBlock& v = v_.vertices[block];
-        Lanes drawn = 0;
-        for (Lanes left = v.points & ~v.guided & ~(v.deep[0] & v.deep[1]); left; left &= left - 1) {
-            const int i = std::countr_zero(left);
-            const size_t at = block * kBlock + size_t(i);
-            Point& p = points_[at] = pointOf(block, i, c);
-            Vec3 w;
-            if (!guide_.draws(c.rays[at], p.aim, {v.P[0][i], v.P[1][i], v.P[2][i]}, w)) continue;
-            for (int q = 0; q < 3; ++q) w_[q][i] = w[q];
-            drawn |= 1u << i;
-        }
+        const Lanes drawn = draw(block, v.points & ~v.guided & ~(v.deep[0] & v.deep[1]), c);
         for (size_t k = 0; k < v_.count && drawn; ++k) {
             Lanes of = 0;
             for (Lanes left = drawn; left; left &= left - 1)

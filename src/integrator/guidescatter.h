@@ -25,7 +25,8 @@ private:
         int site = -1;
         GuideRays::Aim aim;
     };
-    Point pointOf(size_t block, int lane, const BatchContext&) const;
+    int siteOf(size_t block, int lane, const BatchContext&, GuideRays::Query&) const;
+    Lanes draw(size_t block, Lanes, const BatchContext&);
     void send(size_t block, int site, Lanes, BatchContext&, Sched&);
     GuideRays& guide_;
     MediaStacks& media_;

@@ -42,10 +42,10 @@ private:
 /// Purpose of an emission.
 struct PhotonUse {
     bool all = true;       ///< if no light sets "emitphotons", all lights emit
-    bool sky = true;       ///< environments emit, too
+    bool sky = true;       ///< environments emit, too; learns: where they are bright, if few directions are
     bool caustics = false; ///< stores caustic photons only
     float width = 0;       ///< lobes with a smaller spread, in radians, count as mirrors
-    bool learns = false;   ///< for the caustic guide: shaders do not print or bake, and messages are dropped
+    bool learns = false;   ///< for the caustic guide: only lights that rays can find emit, shaders do not print or bake
 };
 
 /// Emits photons in one world, which must have been built for the hider path.

@@ -1,6 +1,6 @@
 #include "integrator/lightsample.h"
 #include "services/lightloop.h"
-#include "world/skytable.h"
+#include "world/skysampler.h"
 #include <bit>
 
 namespace alpenglow::integrator {

@@ -29,7 +29,7 @@ PhotonEmission::PhotonEmission(std::shared_ptr<const World> w, const PhotonUse& 
     impl_->world = std::static_pointer_cast<const WorldImpl>(std::move(w));
     impl_->use = use;
     const Pipeline pipeline(impl_->world, d);
-    impl_->plan = std::make_unique<EmissionPlan>(pipeline.stages().lightKernels, use.all, use.sky);
+    impl_->plan = std::make_unique<EmissionPlan>(pipeline.stages().lightKernels, use);
     impl_->met = impl_->plan->met(use.caustics);
 }
 PhotonEmission::~PhotonEmission() = default;

@@ -9,6 +9,7 @@ namespace alpenglow::integrator {
 
 class LightKernels;
 struct PhotonJob;
+struct PhotonUse;
 
 /// Random numbers of one photon at emission.
 struct EmissionDraw {
@@ -32,14 +33,15 @@ public:
         Vec3 place;                  ///< LightKind::Point
         double pdf = 0;              ///< BoundLight::photons: mean density from generatePhoton()
         float front = .5f;           ///< Area: fraction that leaves on the side of n
+        bool bright = false;         ///< Environment: emits by its table, and only from its bright directions
         std::vector<float> guide;    ///< kBins x kBins: densities of `way` by row; empty: uniform
         std::vector<float> rows;     ///< probability of each row of the guide
     };
     static constexpr int kBins = 32;
 
     /// Lights that emit by their attributes: those with "emitphotons" 1; if no light of the frame sets it, all others except what
-    /// `all` excludes. all: false: only lights that set it. sky: environments emit, too.
-    EmissionPlan(LightKernels&, bool all, bool sky);
+    /// PhotonUse::all excludes (false: only lights that set it).
+    EmissionPlan(LightKernels&, const PhotonUse&);
     bool empty() const { return lights_.empty(); }
     const std::vector<Light>& lights() const { return lights_; }
     /// Whether anything moves that photons may hit or leave; distance that lights move while the shutter is open.

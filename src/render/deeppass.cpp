@@ -82,20 +82,12 @@ std::shared_ptr<const display::DeepSamples> seeDepths(Job& job, int nx, int ny, 
     std::vector<Row> made(rows);
     DepthLoop loop(job, nx, ny, jitter, seed, error);
     std::atomic<size_t> steps{0};
-    const bool whole = job.team.run(
-        rows, &job.halt,
-        [&](int worker, size_t i) {
-            loop.row(worker, w.y0 + int(i), made[i]);
-            if ((steps += made[i].steps.size()) > limits::kDeepSteps) job.halt = 1;
-        },
-        [&](size_t done) {
-            job.pollStop();
-            ProgressState s;
-            s.fraction = s.samplesDone = double(done) / double(std::max<size_t>(rows, 1));
-            s.samplesTotal = 1;
-            job.progress.update(s, job.what + ": depths");
-        });
-    job.progress.clear();
+    const bool whole = job.runShown(rows, "depths", [&](int worker, size_t i) {
+        steps -= made[i].steps.size(); // of an earlier run
+        made[i] = {};
+        loop.row(worker, w.y0 + int(i), made[i]);
+        if ((steps += made[i].steps.size()) > limits::kDeepSteps) job.halt = 1;
+    });
     if (steps > limits::kDeepSteps) {
         job.diagnostics.report(Severity::Error, Rie::Limit, {},
                                "a deep shadow map has more than " + std::to_string(limits::kDeepSteps) +
@@ -105,7 +97,7 @@ std::shared_ptr<const display::DeepSamples> seeDepths(Job& job, int nx, int ny, 
         if (!job.interrupted) job.halt = 0;
         return {};
     }
-    if (!whole || job.interrupted) return {};
+    if (!whole) return {};
     auto deep = std::make_shared<display::DeepSamples>();
     deep->steps.reserve(steps);
     for (const Row& r : made) {

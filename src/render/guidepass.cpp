@@ -78,7 +78,7 @@ bool learnCaustics(Job& job) {
     const scene::Options& o = job.world->frame().options;
     if (refused(o) || !job.world->photons() || !world::mayHaveCaustics(*job.world)) return true;
     Diagnostics silent;
-    PhotonPasses passes(job, job.world, {true, false, true, 0, true}, silent);
+    PhotonPasses passes(job, job.world, {.all = true, .sky = true, .caustics = true, .width = 0, .learns = true}, silent);
     if (!passes.emission().lights()) return true;
     std::vector<world::StoredPhoton> found;
     const auto take = [&](uint32_t, std::vector<world::StoredPhoton> stored) { found = std::move(stored); };

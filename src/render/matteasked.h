@@ -11,7 +11,8 @@ struct MattesAsked {
     std::vector<std::string> layers; ///< attributes "class:name", or "material"
     int ranks = 6;                   ///< 2 to limits::kMatteRanks, even
 };
-/// By the parameters "layer" and "levels" of a Display; bad ones are reported.
-MattesAsked mattesAsked(const scene::ParamList&, const SourcePlace&, Diagnostics&);
+/// By the parameters "layer" and "levels" of a Display; bad ones are reported, as are more channels than a picture can have
+/// (limits::kImageChannels). channels: those of the picture beside the mattes.
+MattesAsked mattesAsked(const scene::ParamList&, size_t channels, const SourcePlace&, Diagnostics&);
 
 } // namespace alpenglow::render

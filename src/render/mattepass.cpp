@@ -146,6 +146,7 @@ void MatteLoop::finish(const PixelShares& p, size_t pixel) {
                   [](const auto& a, const auto& b) { return a.first > b.first || (a.first == b.first && a.second < b.second); });
         display::Matte& m = out_[i];
         float* to = m.pairs.data() + pixel * size_t(2 * m.ranks);
+        std::fill_n(to, 2 * m.ranks, 0.f);
         for (size_t k = 0; k < std::min(ranked.size(), size_t(m.ranks)); ++k, to += 2) {
             to[0] = std::bit_cast<float>(ranked[k].second);
             to[1] = float(std::min(ranked[k].first, 1.0)); // negative lobes of other samples may raise it
@@ -169,7 +170,7 @@ bool MatteLoop::band(int worker, int y0, int y1, std::vector<std::map<std::strin
 
 } // namespace
 
-MattesAsked mattesAsked(const scene::ParamList& params, const SourcePlace& place, Diagnostics& d) {
+MattesAsked mattesAsked(const scene::ParamList& params, size_t channels, const SourcePlace& place, Diagnostics& d) {
     MattesAsked asked;
     const auto wrong = [&](const std::string& why) { d.report(Severity::Error, Rie::Range, place, "Cryptomatte: " + why); };
     if (const scene::Param* p = scene::find(params, "layer"))
@@ -187,6 +188,18 @@ MattesAsked mattesAsked(const scene::ParamList& params, const SourcePlace& place
         if (p->numbers[0] >= 1 && p->numbers[0] <= limits::kMatteRanks) asked.ranks = 2 * ((int(p->numbers[0]) + 1) / 2);
         else wrong(fmt::format("\"levels\" must be in 1 to {}; {} is used", limits::kMatteRanks, asked.ranks));
     }
+    // Each level has two channels: an id and its coverage.
+    const size_t room = limits::kImageChannels - std::min(channels, size_t(limits::kImageChannels)), layers = asked.layers.size();
+    if (2 * size_t(asked.ranks) * layers > room) {
+        const int fit = std::max(2, int(room / (2 * layers)) / 2 * 2);
+        d.report(
+            Severity::Error, Rie::Limit, place,
+            fmt::format("Cryptomatte: {} channels of the picture and {} layers of {} levels are more than {} channels; {} levels "
+                        "are written",
+                        channels, layers, asked.ranks, limits::kImageChannels, fit),
+            "a display of its own for some of the layers, or fewer \"levels\"");
+        asked.ranks = fit;
+    }
     return asked;
 }
 
@@ -202,22 +215,11 @@ display::MattesRef seeMattes(Job& job, const MattesAsked& asked, const PixelFilt
     }
     const size_t bands = size_t((w.height() + kBandRows - 1) / kBandRows);
     std::vector<std::vector<std::map<std::string, uint32_t>>> names(bands);
-    const bool whole = job.team.run(
-        bands, &job.halt,
-        [&](int worker, size_t i) {
-            const int y0 = w.y0 + int(i) * kBandRows;
-            MatteLoop(job, asked, filter, nx, ny, jitter, seed, *mattes)
-                .band(worker, y0, std::min(w.y1, y0 + kBandRows), names[i]);
-        },
-        [&](size_t done) {
-            job.pollStop();
-            ProgressState s;
-            s.fraction = s.samplesDone = double(done) / double(std::max<size_t>(bands, 1));
-            s.samplesTotal = 1;
-            job.progress.update(s, job.what + ": mattes");
-        });
-    job.progress.clear();
-    if (!whole || job.interrupted) return {};
+    const bool whole = job.runShown(bands, "mattes", [&](int worker, size_t i) {
+        const int y0 = w.y0 + int(i) * kBandRows;
+        MatteLoop(job, asked, filter, nx, ny, jitter, seed, *mattes).band(worker, y0, std::min(w.y1, y0 + kBandRows), names[i]);
+    });
+    if (!whole) return {};
     for (auto& band : names)
         for (size_t i = 0; i < band.size(); ++i) (*mattes)[i].names.merge(band[i]);
     return mattes;

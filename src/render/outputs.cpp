@@ -243,7 +243,8 @@ OutputPlan planOutputs(const scene::Options& o, const RenderSettings& settings, 
         if (deep) display.mode = "z"; // "deepopacity" and the like: it holds what it holds
         OutputSpec s = specOf(display, o, b, plan, diags);
         s.deep = deep;
-        if (display::findDriver(s.type) == &display::cryptomatteDriver) s.asksMattes = mattesAsked(s.params, s.place, diags);
+        if (display::findDriver(s.type) == &display::cryptomatteDriver)
+            s.asksMattes = mattesAsked(s.params, s.channels().size(), s.place, diags);
         if (settings.gamma && s.ownExposure && !isMap(d.display)) s.gamma = *settings.gamma;
         s.map = isMap(d.display);
         s.userFile = d.user;

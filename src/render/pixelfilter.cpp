@@ -1,5 +1,6 @@
 #include "render/pixelfilter.h"
 #include "base/exact.h"
+#include "base/filternames.h"
 #include "base/limits.h"
 #include "base/vec.h"
 #include <cmath>
@@ -45,8 +46,9 @@ double besselJ1(double x) {
 const char* filterName(FilterKind k) { return kNames[int(k)]; }
 
 std::optional<FilterKind> filterByName(std::string_view name) {
+    const std::string same = filterNameOf(name);
     for (int i = 0; i < kFilterKinds; ++i)
-        if (name == kNames[i]) return FilterKind(i);
+        if (same == kNames[i]) return FilterKind(i);
     return {};
 }
 

@@ -67,7 +67,8 @@ Hider hiderOf(const scene::Options& o, Diagnostics& diags) {
     if (o.hider == "path" || o.hider == "photon") return Hider::Path;
     if (o.hider == "raytrace") return Hider::Raytrace;
     // What others call theirs: the painter's algorithm of RISpec, Pixie's two, and those of programs that came of it.
-    constexpr std::array<std::string_view, 5> kSame = {"paint", "stochastic", "zbuffer", "reyes", "scanline"};
+    constexpr std::array<std::string_view, 8> kSame = {"paint", "painter",  "stochastic",  "zbuffer",
+                                                       "reyes", "scanline", "depthbuffer", "opengl"};
     if (o.hider != "hidden" && !o.hider.empty() && std::find(kSame.begin(), kSame.end(), o.hider) == kSame.end())
         diags.report(Severity::Error, Rie::Incapable, o.hiderPlace, "there is no hider \"" + o.hider + "\": \"hidden\" is used",
                      "the hiders are hidden, path, photon and raytrace");

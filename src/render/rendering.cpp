@@ -47,6 +47,18 @@ bool Job::run(size_t count, const std::function<void(int, size_t)>& work, const 
     }
 }
 
+bool Job::runShown(size_t count, const char* part, const std::function<void(int, size_t)>& work) {
+    const bool whole = run(count, work, [&](size_t done) {
+        pollStop();
+        ProgressState s;
+        s.fraction = s.samplesDone = double(done) / double(std::max<size_t>(count, 1));
+        s.samplesTotal = 1;
+        progress.update(s, what + ": " + part);
+    });
+    progress.clear();
+    return whole && !interrupted;
+}
+
 bool Job::makeMet() {
     const std::vector<int> numbers = world::procedurals(*world);
     std::shared_ptr<const world::World> next = make && !numbers.empty() ? make(numbers) : nullptr;

@@ -60,6 +60,8 @@ struct Job {
     /// Runs tasks 0 to count - 1 like Team::run(). Tasks whose rays reached deferred procedurals are repeated after expansion, so
     /// the results of a task must be those of its last run.
     bool run(size_t count, const std::function<void(int, size_t)>& work, const std::function<void(size_t)>& tick);
+    /// The same, with a progress line that ends in `part`, for passes beside that of the picture. Returns false if stopped.
+    bool runShown(size_t count, const char* part, const std::function<void(int, size_t)>& work);
     /// Whether rays of the worker's current task reached such procedurals; its results are then undefined.
     bool unfinished(int worker) const { return unfinished_[size_t(worker)] != 0; }
     /// Expands the procedurals that rays reached, between tasks. Returns false if stopped.

@@ -135,6 +135,36 @@ bool Interpreter::record(const Call& call) {
     return true;
 }
 
+/// The world that is edited is that of the archive; it is drawn as it stands.
+void Interpreter::editWorld(const Call& call) {
+    if (editsWorld_) return reporter.error(Rie::Nesting, call.place, "EditWorldBegin inside an EditWorldBegin");
+    incapable(call, "edits of a world are not done by this version: the world of the archive is drawn as it stands");
+    readArchive(call.text(0), call.place);
+    editsWorld_ = true;
+}
+
+void Interpreter::endEditWorld(const Call& call) {
+    if (!editsWorld_) reporter.error(Rie::Nesting, call.place, "EditWorldEnd without EditWorldBegin");
+    editsWorld_ = false;
+}
+
+bool Interpreter::leftOutEdit(const Call& call) {
+    if (!editsWorld_) return false;
+    const std::string_view name = call.request->name;
+    const bool begins = name == "EditBegin" || name == "EditAttributeBegin",
+               ends = name == "EditEnd" || name == "EditAttributeEnd";
+    if (begins) {
+        ++leftOutEdits_;
+    } else if (ends && leftOutEdits_ > 0) {
+        --leftOutEdits_;
+        return true;
+    } else if (name == "EditWorldEnd") {
+        if (leftOutEdits_ > 0) reporter.error(Rie::Nesting, call.place, "EditWorldEnd inside an EditBegin");
+        leftOutEdits_ = 0;
+    }
+    return leftOutEdits_ > 0;
+}
+
 /// Archives that read archives can repeat a few lines without end; what is read once is bounded by its own length.
 bool Interpreter::mayReplay(const Call& call) {
     if (!replaying_ || ++replayedCalls_ <= limits::kReplayedCalls) return true;

@@ -40,7 +40,7 @@ void Interpreter::nextScene() {
     archivesRead_.clear();
     shelf_.forgetPlaces();
     baseWorld_ = worldSerial_;
-    ris_ = filtered_ = false;
+    ris_ = linksFilters_ = false;
     headlight_ = true;
     integratorSurface_ = nullptr;
 }
@@ -99,6 +99,8 @@ void Interpreter::finish(const SourcePlace& end) {
     closeOpenEnds(0, end);
     unwind(0, end, false);
     overflow_ = 0;
+    leftOutEdits_ = 0;
+    editsWorld_ = false;
     reporter.flush(end);
 }
 
@@ -114,7 +116,7 @@ void Interpreter::take(const Call& given) {
     if (hasVariables_ && !holdsBack()) substituted = withVariables(given);
     const Call& call = substituted ? *substituted : given;
     if (record(call) || conditional(call)) return;
-    if (passesOver()) return;
+    if (passesOver() || leftOutEdit(call)) return;
     if (settings.executed && !telling_) tell(call);
     else perform(call);
 }

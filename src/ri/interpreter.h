@@ -146,10 +146,14 @@ public:
 
     /// RIS: the shader of a Bxdf or similar request, with the patterns that its connections name now (scene/network.h).
     scene::ShaderRef network(const Call& call, scene::Keeper);
-    void pattern(const Call& call);     ///< Pattern
-    void risLight(const Call& call);    ///< Light
-    void lightFilter(const Call& call); ///< LightFilter
-    void isRis() { ris_ = true; }       ///< the scene has requests of RIS
+    void pattern(const Call& call);      ///< Pattern
+    void risLight(const Call& call);     ///< Light
+    void lightFilter(const Call& call);  ///< LightFilter
+    void enableFilter(const Call& call); ///< EnableLightFilter
+    void editWorld(const Call& call);    ///< EditWorldBegin
+    void endEditWorld(const Call& call);
+    void linksFilters() { linksFilters_ = true; } ///< Attribute "lightfilter"
+    void isRis() { ris_ = true; }                 ///< the scene has requests of RIS
     /// The shader that an Integrator sees instead of all surfaces; null: none.
     void integratorSurface(scene::ShaderRef s) { integratorSurface_ = std::move(s); }
     /// Whether the integrator lights a scene without lights from the eye.
@@ -293,7 +297,7 @@ private:
     std::shared_ptr<scene::ShaderCall> networkCall(const Call&); ///< a node of a network of patterns
     /// A node of OSL with its patterns, as one shader.
     void oslPatterns(const Call&, const scene::ShaderCall& given, const scene::Param& named);
-    void sayFilterSubsets(const scene::Frame&);
+    void dropFilterLinks(scene::Frame&) const;
     void overrideAttributes(scene::Frame&); ///< at WorldEnd: lights that are on everywhere, the surface of the integrator
     void addFilters(Call& call) const;      ///< light filters as parameters of the light
     void addProfile(Call& call);            ///< an IES profile as a parameter of the light
@@ -371,6 +375,7 @@ private:
     static scene::AttributesRef withoutLights(const scene::AttributesRef& a, size_t stable);
     scene::Object forThisWorld(const StoredObject& o) const;
     void rebase(scene::Attributes& a, const scene::Transform& cameraToWorld);
+    bool leftOutEdit(const Call& call); ///< whether a request belongs to an edit of a world that stands
     bool evaluate(const Call& call);
     /// The value of a variable of IfBegin or of a text. If it is not set: with `standard` its default, else nothing.
     std::optional<ConditionValue> variable(const std::string& name, bool standard) const;
@@ -391,6 +396,8 @@ private:
     std::vector<Block> blocks_;
     std::array<int, 8> depth_{}; ///< open blocks, by BlockKind
     int overflow_ = 0;           ///< Begins beyond limits::kStackDepth and those in them, whose Ends are ignored
+    int leftOutEdits_ = 0;       ///< open EditBegins in an EditWorldBegin
+    bool editsWorld_ = false;    ///< EditWorldBegin is open
     int deepConditions_ = 0;     ///< the same of IfBegin
     int nested_ = 0;             ///< calls of deeper() that have not returned
     std::optional<Motion> motion_;
@@ -411,7 +418,7 @@ private:
     scene::ShaderRef integratorSurface_;                  ///< of all surfaces of this world
     bool headlight_ = true;                               ///< no integrator, or PxrDefault: what has no light is lit from the eye
     bool ris_ = false;                                    ///< the scene has requests of RIS
-    bool filtered_ = false;                               ///< the scene has a LightFilter
+    bool linksFilters_ = false;                           ///< some primitive may leave out some filter of its lights
     size_t objectSerial_ = 0, worldSerial_ = 0;
     std::shared_ptr<scene::Frame> frame_;
     scene::Transform worldToCamera_;

@@ -85,6 +85,8 @@ std::optional<LightFilter> lightFilter(const std::string& name, const scene::Par
     if (kind->second == Rod && !scene::find(given, "intensity")) f.row[kIntensity] = 0; // it blocks
     putRamp(f.row, given);
     if (const scene::Param* map = scene::find(given, "map"); map && !map->strings.empty()) f.map = map->strings[0];
+    if (const scene::Param* groups = scene::find(given, "linkingGroups"); groups && !groups->strings.empty())
+        f.groups = groups->strings[0];
     return f;
 }
 

@@ -13,6 +13,7 @@ namespace alpenglow::ri {
 struct LightFilter {
     std::vector<float> row;
     std::string map;
+    std::string handle, groups; ///< "linkingGroups"
 };
 inline constexpr size_t kFilterRow = 128, kFilterKnots = 16;
 

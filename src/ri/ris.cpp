@@ -143,6 +143,9 @@ void Interpreter::pattern(const Call& call) {
         p->name = named->strings[0];
         p->params.erase(named);
     }
+    const bool number = scene::find(p->params, "inputF") || std::any_of(p->connections.begin(), p->connections.end(),
+                                                                        [](const auto& c) { return c.parameter == "inputF"; });
+    if (p->name == "PxrTee" && number) p->name = "PxrTeeFloat"; // an output has one type
     known[call.text(1)] = std::move(p);
 }
 

@@ -3,6 +3,7 @@
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/ris.h"
+#include "scene/filterlink.h"
 #include <algorithm>
 #include <fmt/format.h>
 #include <sstream>
@@ -62,6 +63,17 @@ RawParam numbersParam(const char* name, const std::vector<float>& numbers) {
     return p;
 }
 
+RawParam textsParam(const char* name, std::vector<std::string> texts) {
+    RawParam p;
+    p.token = fmt::format("uniform string[{}] {}", texts.size(), name);
+    p.value.kind = Value::Kind::Strings;
+    p.value.array = true;
+    p.value.strings = std::move(texts);
+    return p;
+}
+
+constexpr char kFilterLinks[] = "lightFilterLinks"; // shaders/include/rislight.h
+
 } // namespace
 
 std::optional<std::string_view> lightGeometry(std::string_view name) {
@@ -79,7 +91,6 @@ std::optional<std::string_view> lightGeometry(std::string_view name) {
 
 void Interpreter::lightFilter(const Call& call) {
     ris_ = true;
-    filtered_ = true;
     const scene::ParamList given = bind(call, Use::Other);
     const std::string& name = call.text(0);
     if (name == "PxrCombinerLightFilter") return; // each filter has its own way to be combined
@@ -105,6 +116,8 @@ void Interpreter::lightFilter(const Call& call) {
     if (all->size() >= kLightFilters)
         return reporter.once("ri:lightfilters", Severity::Error, Rie::Limit, call.place,
                              fmt::format("a light has more than {} filters", kLightFilters));
+    filter->handle = call.text(1);
+    linksFilters_ |= !filter->groups.empty();
     all->push_back(std::move(*filter));
     state.filters = std::move(all);
 }
@@ -113,16 +126,36 @@ void Interpreter::lightFilter(const Call& call) {
 void Interpreter::addFilters(Call& call) const {
     if (!state.filters) return;
     std::vector<float> rows;
-    RawParam maps;
-    maps.token = fmt::format("uniform string[{}] lightFilterMaps", state.filters->size());
-    maps.value.kind = Value::Kind::Strings;
-    maps.value.array = true;
+    std::vector<std::string> maps, links;
     for (const LightFilter& f : *state.filters) {
         rows.insert(rows.end(), f.row.begin(), f.row.end());
-        maps.value.strings.push_back(f.map);
+        maps.push_back(f.map);
+        links.push_back(scene::FilterLink{call.text(1), f.handle, f.groups}.text());
     }
     call.params.push_back(numbersParam("lightFilters", rows));
-    call.params.push_back(std::move(maps));
+    call.params.push_back(textsParam("lightFilterMaps", std::move(maps)));
+    call.params.push_back(textsParam(kFilterLinks, std::move(links)));
+}
+
+void Interpreter::enableFilter(const Call& call) {
+    ris_ = true;
+    linksFilters_ = true;
+    scene::Param p;
+    p.name = scene::enabledFilterKey(call.text(0), call.text(1));
+    p.numbers = {call.real(2)};
+    p.place = call.place;
+    attributes().values[p.name] = std::move(p);
+}
+
+/// Where all filters act on everything, lights need not ask what they light.
+void Interpreter::dropFilterLinks(scene::Frame& frame) const {
+    if (linksFilters_) return;
+    for (scene::Light& l : frame.lights) {
+        if (!l.shader || !scene::find(l.shader->params, kFilterLinks)) continue;
+        auto copy = std::make_shared<scene::ShaderCall>(*l.shader);
+        std::erase_if(copy->params, [](const scene::Param& p) { return p.name == kFilterLinks; });
+        l.shader = std::move(copy);
+    }
 }
 
 /// The photometry of "iesProfile", read, as a parameter of the light.
@@ -209,21 +242,9 @@ void Interpreter::risLight(const Call& call) {
     end(BlockKind::Attribute, call);
 }
 
-/// A subset of the filters of its lights cannot be had by one primitive alone.
-void Interpreter::sayFilterSubsets(const scene::Frame& frame) {
-    if (!filtered_) return;
-    for (const scene::PrimitiveRef& p : frame.primitives) {
-        const scene::Param* subset = p->attributes ? p->attributes->value("lightfilter:subset") : nullptr;
-        if (!subset || wordsOf(subset).empty()) continue;
-        return reporter.once("ri:lightfilter:subset", Severity::Warning, Rie::Incapable, subset->place,
-                             "lightfilter:subset is not obeyed: every filter of a light holds for all that it illuminates",
-                             "a light of its own, with these filters, and lighting:subset do the same");
-    }
-}
-
 /// Lights of RIS are on for all that there is, whatever stood before them; an integrator may see one surface everywhere.
 void Interpreter::overrideAttributes(scene::Frame& frame) {
-    sayFilterSubsets(frame);
+    dropFilterLinks(frame);
     if (globalLights_.empty() && !integratorSurface_) return;
     std::map<scene::AttributesRef, scene::AttributesRef> lit;
     const std::vector<std::pair<int, std::set<std::string>>> groups = groupsOfLights(frame);

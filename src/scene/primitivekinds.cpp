@@ -46,10 +46,10 @@ bool faces(const std::vector<int>& nverts, const std::vector<int>& verts, Variab
     return true;
 }
 
-/// Patches and varying corners along one direction of a bicubic mesh.
+/// Patches and varying corners along one direction of a bicubic mesh. A periodic one takes its first points again behind its
+/// last, so it may have fewer than four.
 bool cubicSpan(int64_t n, int step, bool periodic, const char* dir, int64_t* patches, int64_t* corners, std::string* why) {
-    int64_t rest = periodic ? n % step : n - 4 < 0 ? 1 : (n - 4) % step;
-    if (n < 4 || rest != 0)
+    if (n < (periodic ? 2 : 4) || (periodic ? n : n - 4) % step != 0)
         return fail(why, std::to_string(n) + " control points in " + dir + " do not fit a basis of step " + std::to_string(step));
     *patches = periodic ? n / step : (n - 4) / step + 1;
     *corners = periodic ? *patches : *patches + 1;

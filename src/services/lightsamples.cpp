@@ -5,7 +5,7 @@
 #include "services/services.h"
 #include "world/emitterfootprint.h"
 #include "world/outputs.h"
-#include "world/skytable.h"
+#include "world/skysampler.h"
 #include <bit>
 #include <cstdlib>
 

@@ -1,4 +1,5 @@
 // Queries between shaders: parameters and outputs of a primitive's shaders, of lights and volumes; attributes.
+#include "scene/filterlink.h"
 #include "scene/scene.h"
 #include "services/services.h"
 #include "world/arealight.h"
@@ -68,6 +69,16 @@ const InstanceRef& shaderOf(const SurfaceBinding& b, Asks who, const ShadePoint&
     }
 }
 
+/// Whether a filter of a light acts on the surface that it lights; nothing: the name is that of a parameter.
+const std::optional<ShaderValue>& filterActs(Services& answers, int32_t id, const SurfaceBinding* b) {
+    const scene::Attributes* a = b ? b->attributes.get() : nullptr;
+    const auto [known, fresh] = answers.memo().filterLinks.try_emplace({id, a});
+    if (fresh)
+        if (const auto link = scene::FilterLink::of(rsl::internedString(id)))
+            known->second = ShaderValue(Information{{link->acts(a) ? 1.f : 0.f}, {}, false});
+    return known->second;
+}
+
 } // namespace
 
 void answerMessage(Services& answers, const ServiceCall& q) {
@@ -75,6 +86,8 @@ void answerMessage(Services& answers, const ServiceCall& q) {
     const KernelRun& c = q.c;
     q.each([&](int lane, const ShadePoint& p) {
         const SurfaceBinding* b = q.binding(answers.world(), lane);
+        if (c.lit && who == Asks::Surface)
+            if (const auto& acts = filterActs(answers, q.nameId(lane), b)) return q.answer(lane, *acts);
         if (!b) return;
         const InstanceRef& shader = shaderOf(*b, who, p);
         if (!shader) return;

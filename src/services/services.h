@@ -43,6 +43,7 @@ struct ServiceMemo {
     std::map<std::pair<int32_t, int>, LightParameter> ofLights;                                ///< by name and light
     std::map<std::pair<int32_t, const ShaderInstance*>, std::optional<ShaderValue>> ofShaders; ///< shaderParameter()
     std::map<std::tuple<int32_t, int, const scene::Attributes*, const SurfaceBinding*>, std::optional<ShaderValue>> attributes;
+    std::map<std::pair<int32_t, const scene::Attributes*>, std::optional<ShaderValue>> filterLinks; ///< scene::FilterLink::acts()
     std::unordered_map<const scene::Primitive*, std::optional<ShaderValue>> boxes; ///< kObjectBox of queried primitives
     std::unordered_map<int32_t, std::optional<ShaderValue>> options;
     std::unordered_map<int32_t, bool> pointAttributes;                                ///< ofPoint() of a name

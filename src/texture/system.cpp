@@ -1,6 +1,7 @@
 // TextureSystem: finding, loading and keeping maps.
 #include "base/exact.h"
 #include "base/file.h"
+#include "base/filternames.h"
 #include "base/memory.h"
 #include "base/srgb.h"
 #include "display/imageio.h"
@@ -156,8 +157,9 @@ std::optional<Filter> filterByName(std::string_view n) {
                                                          {"sinc", Filter::Sinc},
                                                          {"lanczos", Filter::Lanczos},
                                                          {"bessel", Filter::Bessel}};
+    const std::string same = filterNameOf(n);
     for (const auto& [name, filter] : kNames)
-        if (n == name) return filter;
+        if (same == name) return filter;
     return {};
 }
 

@@ -1,5 +1,6 @@
 // Binds the lights of a frame to kernels. A shader with several illuminate or solar statements makes several lights: the first
 // keeps the frame's index, the others are its parts, numbered after all lights of the frame.
+#include "scene/filterlink.h"
 #include "scene/scene.h"
 #include "world/lightobjects.h"
 #include "world/mutableworld.h"
@@ -214,7 +215,8 @@ void MutableWorld::bindLights(Diagnostics& d, const std::function<uint32_t(const
         for (const SiteInfo& s : l.kernel.sites)
             if (s.kind == SiteKind::Message || s.kind == SiteKind::LightHandles || (s.photons && s.photons->caustic)) {
                 l.asksSurface = lightsAsk_ = true;
-                if (s.site->op == "surface" && !s.site->strings.empty()) lightMessages_.push_back(s.site->strings[0]);
+                if (s.site->op == "surface" && !s.site->strings.empty() && !scene::FilterLink::of(s.site->strings[0]))
+                    lightMessages_.push_back(s.site->strings[0]);
                 if (s.site->op == "displacement") lightDisplacements_.insert(s.site->strings.empty() ? "" : s.site->strings[0]);
             }
         std::vector<std::string> blocks = l.kernel.kernel->facts().blocks;

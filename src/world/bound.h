@@ -41,9 +41,9 @@ struct BoundLight {
     LightKind kind = LightKind::Ambient;
     InstanceRef instance;
     BoundKernel kernel;
-    std::shared_ptr<Emitter> emitter;          ///< Area
-    std::shared_ptr<const class SkyTable> sky; ///< Environment, path: radiance table; null: rays of lobes find it without one
-    bool importance = true;                    ///< false: not sampled where rays find it (__importancesample 0)
+    std::shared_ptr<Emitter> emitter;            ///< Area
+    std::shared_ptr<const class SkySampler> sky; ///< Environment, path; null: rays of lobes find it without samples
+    bool importance = true;                      ///< false: not sampled where rays find it (__importancesample 0)
     /// Whether it has a density over directions: an emitter that rays can hit, or a sky.
     bool hasDensity() const { return (kind == LightKind::Area && !mean) || isSky(); }
     /// Environment, path, without a table: sampled only where a light guide knows which part is visible (lightguide.h).
@@ -92,7 +92,7 @@ struct BoundLight {
     Vec3 centre;
     float radius = 0;
     Cone front;                                         ///< Area: bound of the directions in which light leaves
-    int group = -1;                                     ///< WorldImpl::lightGroups_; -1: none
+    int group = -1;                                     ///< WorldImpl::lightGroups(); -1: none
     std::shared_ptr<const shading::ParameterRows> rows; ///< for the kernel of its group
 };
 
@@ -150,7 +150,7 @@ struct LightOutput {
         BoundKernel bound;
         std::vector<int> own, main;
     };
-    int number = 0;       ///< WorldImpl::lightOutputs_
+    int number = 0;       ///< WorldImpl::lightOutputs()
     rsl::OutputName slot; ///< name in kernels: "d", or "list[1]" for an array
     std::vector<std::string> outputs;
     Kernel S, V; ///< as SurfaceBinding::surfaceS, surfaceV
@@ -197,7 +197,7 @@ struct SurfaceBinding {
     scene::LightSet lights;       ///< lights that are on, with the parts of their shaders: WorldImpl::eachLight()
     int group = 0;                ///< equal: same program and lights; points are shaded in one batch
     int program = 0;              ///< equal: same kernel; points may share a V batch
-    int lightList = 0;            ///< equal: same lights; index in WorldImpl::lightLists_
+    int lightList = 0;            ///< equal: same lights; index in WorldImpl::lightLists()
     bool usesObjectSpace = false; ///< the kernel reads "object" or "shader" matrices that differ within the binding
     int areaLight = -1;           ///< the area light of this geometry
     bool explicitSurface = true;

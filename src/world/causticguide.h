@@ -39,6 +39,15 @@ public:
         const int32_t i = tree_.find(P, side);
         return i < 0 ? nullptr : &cells_[size_t(i)];
     }
+    /// The same for at most SurfaceTree::kTogether points.
+    void find(std::span<const SurfaceTree::Point> points, const Cell** found) const {
+        int32_t at[SurfaceTree::kTogether];
+        tree_.find(points, at);
+        for (size_t i = 0; i < points.size(); ++i) {
+            found[i] = at[i] < 0 ? nullptr : &cells_[size_t(at[i])];
+            __builtin_prefetch(found[i]);
+        }
+    }
     /// Frequency of guide rays toward the lobes of a cell, as a code: 1 to kMostCode, or 0 for never. brings: what the eye
     /// receives from there under uniform light of radiance 1. Sources of noise brighter than the picture get a ray each time.
     int codeFor(const Cell& c, float brings) const {

@@ -11,18 +11,19 @@ namespace {
 int channelWidth(const ShaderInstance& shader, const rsl::OutputName& name) {
     const std::string& base = name.name;
     const bool element = name.element >= 0;
-    int most = 0;
+    int most = 0, exactly = 0;
     const auto look = [&](const rsl::Program& program) {
         const auto width = [&](const shadeops::Type& type) {
             return shadeops::componentCount(type.base) * (element ? 1 : std::max(1, type.array));
         };
         for (const auto& [channel, type] : program.channels)
             if (channel[0] == rsl::kAnyChannel) most = std::max(most, width(type));
-        if (const auto exact = program.channels.find(base); exact != program.channels.end()) most = width(exact->second);
+        if (const auto exact = program.channels.find(base); exact != program.channels.end())
+            exactly = std::max(exactly, width(exact->second));
     };
     for (const rsl::CoShader& co : shader.coShaders) look(*co.program);
     look(shader.program->program());
-    return most;
+    return exactly > 0 ? exactly : most;
 }
 
 /// Components of a shader's output; 0 if it has none of that name.

@@ -63,6 +63,42 @@ void transformParameter(std::vector<float>& v, shadeops::Base base, const Matrix
 
 } // namespace
 
+/// Every expression of a program, those of its parameters' defaults among them.
+template <class F> static void everyExpression(const rsl::Program& program, const F& f) {
+    const auto body = [&](const rsl::StmtPtr& b) {
+        if (b) rsl::front::everyExpr(*b, f);
+    };
+    for (const auto& s : program.shaders) {
+        for (const auto& p : s->parameters)
+            if (p.defaultValue) rsl::front::everyExpr(*p.defaultValue, f);
+        body(s->body);
+    }
+    rsl::front::everyFunction(program, [&](const rsl::Function& g) { body(g.body); });
+}
+
+/// Where a shader names that space: as the space of a value or of a transformation, else as the default of a parameter that
+/// stands there, else wherever the text is.
+static std::optional<rsl::Place> placeOfSpace(const rsl::Program& program, const std::string& name) {
+    std::optional<rsl::Place> written, anywhere;
+    std::set<std::string> variables; // that hold spaces
+    const auto isName = [&](const rsl::Expr& e) { return e.kind == rsl::ExprKind::String && e.text == name; };
+    const auto space = [&](const rsl::Expr& e) {
+        if (isName(e) && !written) written = e.place;
+        if (e.kind == rsl::ExprKind::Variable && e.symbol) variables.insert(e.symbol->name);
+    };
+    everyExpression(program, [&](const rsl::Expr& e) {
+        if (isName(e) && !anywhere) anywhere = e.place;
+        if (e.space) space(*e.space);
+        if (e.kind == rsl::ExprKind::ShadeopCall && e.shadeop->name.ends_with("transform"))
+            for (const auto& a : e.args) space(*a);
+    });
+    if (written) return written;
+    for (const auto& s : program.shaders)
+        for (const auto& p : s->parameters)
+            if (p.defaultValue && isName(*p.defaultValue) && variables.count(p.symbol->name)) return p.defaultValue->place;
+    return anywhere;
+}
+
 /// Warns about spaces in a shader that neither the renderer nor the scene defines, at the place of the name.
 static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, std::span<const rsl::InputName> which,
                              Diagnostics& d) {
@@ -72,19 +108,7 @@ static void sayUnknownSpaces(const WorldImpl& world, const ShaderInstance& i, st
             if (!world.knowsSpace(name)) unknown.insert(name);
     for (const std::string& name : unknown) {
         const rsl::Program& program = i.program->program();
-        std::optional<rsl::Place> at;
-        const auto look = [&](const rsl::Expr& e) {
-            if (e.kind == rsl::ExprKind::String && e.text == name && !at) at = e.place;
-        };
-        const auto body = [&](const rsl::StmtPtr& b) {
-            if (b) rsl::front::everyStmt(*b, [](const rsl::Stmt&) {}, look);
-        };
-        for (const auto& s : program.shaders) {
-            for (const auto& p : s->parameters)
-                if (p.defaultValue) rsl::front::everyExpr(*p.defaultValue, look);
-            body(s->body);
-        }
-        rsl::front::everyFunction(program, [&](const rsl::Function& f) { body(f.body); });
+        const std::optional<rsl::Place> at = placeOfSpace(program, name);
         SourcePlace place = i.place;
         if (at && at->file >= 0 && size_t(at->file) < program.files.size())
             place = {program.files[size_t(at->file)], at->line, at->column};

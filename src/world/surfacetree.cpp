@@ -80,6 +80,30 @@ bool SurfaceTree::placeOf(const Vec3& P, Place& to) const {
     return true;
 }
 
+void SurfaceTree::find(std::span<const Point> points, int32_t* cells) const {
+    Place place[kTogether];
+    uint32_t active[kTogether];
+    size_t left = 0;
+    for (size_t i = 0; i < points.size(); ++i) {
+        const int32_t root = edge_ > 0 ? roots_[points[i].side] : kNone;
+        const bool within = root != kNone && placeOf(points[i].P, place[i]);
+        cells[i] = within ? root : kNone;
+        if (cells[i] >= 0) active[left++] = uint32_t(i);
+    }
+    for (int shift = kLevels - 1; left > 0; --shift) {
+        size_t kept = 0;
+        for (size_t k = 0; k < left; ++k) {
+            const uint32_t i = active[k];
+            const Place& p = place[i];
+            cells[i] = nodes_[size_t(cells[i]) * 8 + ((p.x >> shift & 1) | (p.y >> shift & 1) << 1 | (p.z >> shift & 1) << 2)];
+            active[kept] = i;
+            kept += cells[i] >= 0;
+        }
+        left = kept;
+    }
+    for (size_t i = 0; i < points.size(); ++i) cells[i] = cells[i] == kNone ? -1 : -1 - cells[i];
+}
+
 int32_t SurfaceTree::find(const Vec3& P, int side) const {
     Place p;
     if (!(edge_ > 0) || roots_[side] == kNone || !placeOf(P, p)) return -1;

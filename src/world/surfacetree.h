@@ -45,6 +45,9 @@ public:
     void build(std::span<const Point>, size_t split, size_t fewest, const std::function<int32_t(const Leaf&)>& make);
     /// The cell of a place on a side; -1: none.
     int32_t find(const Vec3& P, int side) const;
+    /// The same for several points at once, level by level, so that their memory accesses overlap. At most kTogether points.
+    static constexpr size_t kTogether = 16;
+    void find(std::span<const Point>, int32_t* cells) const;
     float edge() const { return edge_; } ///< of the cube around all points
 
 private:

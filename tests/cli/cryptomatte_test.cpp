@@ -198,6 +198,23 @@ TEST_F(Cryptomatte, LayersAndLevelsAreBounded) {
     EXPECT_EQ(most(limits::kMatteRanks + 1), 4u + 2 * 6); // those by default
 }
 
+TEST_F(Cryptomatte, MoreChannelsThanAPictureHasAreAnError) {
+    std::string layers;
+    for (size_t i = 0; i < limits::kMatteLayers; ++i) layers += "\"user:a" + std::to_string(i) + "\" ";
+    const display::Image m =
+        picture(frame("Display \"m.exr\" \"cryptomatte\" \"rgba\" \"string[" + std::to_string(limits::kMatteLayers) +
+                          "] layer\" [" + layers + "] \"int levels\" " + std::to_string(limits::kMatteRanks),
+                      slab("a", "-1", "5")));
+    EXPECT_NE(status, 0);
+    EXPECT_NE(
+        said().find("4 channels of the picture and 8 layers of 64 levels are more than 1024 channels; 62 levels are written"),
+        std::string::npos)
+        << said();
+    EXPECT_NE(said().find("fewer \"levels\""), std::string::npos) << said();
+    EXPECT_EQ(m.channels.size(), 4u + 8 * 2 * 62);
+    EXPECT_EQ(std::bit_cast<uint32_t>(valueAt(m, 1, 0, "Crypto_user_a730.R")), 0u);
+}
+
 TEST_F(Cryptomatte, BadParametersAreSaid) {
     picture(
         frame("Display \"m.exr\" \"cryptomatte\" \"rgba\" \"string layer\" \"name\" \"int levels\" 1000", slab("a", "-1", "5")));

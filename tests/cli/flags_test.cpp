@@ -191,7 +191,8 @@ TEST_F(Flags, SmallTruths) {
     run("render -q -o h.png h.rib");
     EXPECT_TRUE(says("h.rib:2:1: error: there is no hider \"pathtrace\": \"hidden\" is used")) << errors();
     EXPECT_TRUE(says("the hiders are hidden, path, photon and raytrace")) << errors();
-    for (const char* same : {"paint", "stochastic", "zbuffer", "reyes", "scanline"}) { // names that other programs have for it
+    for (const char* same : {"paint", "painter", "stochastic", "zbuffer", "reyes", "scanline", "depthbuffer",
+                             "opengl"}) { // names that other programs have for it
         write("h.rib", std::string("Format 8 8 1\nHider \"") + same + "\"\n" + kScene);
         run("render -q -o h.png h.rib");
         EXPECT_EQ(status, 0) << same << ": " << errors();

@@ -47,6 +47,8 @@ TEST(Mode, StandardModes) {
     EXPECT_EQ(namesOf("a"), V{"a"});
     EXPECT_EQ(namesOf("z"), V{"z"});
     EXPECT_EQ(namesOf("az"), (V{"a", "z"}));
+    EXPECT_EQ(namesOf("RGBA"), (V{"r", "g", "b", "a"}));
+    EXPECT_EQ(namesOf("A").size(), 3u); // a variable
     EXPECT_EQ(namesOf(""), (V{"r", "g", "b", "a"}));
 }
 

@@ -35,8 +35,9 @@ TEST(Bernstein, RootsAreThoseOfTheFactors) {
 TEST(Curves, FollowTheirBasisInEveryStepAndWrap) {
     Rng rng(2);
     for (const NamedBasis& b : bases())
-        for (bool periodic : {false, true}) {
-            const size_t step = size_t(b.step), n = periodic ? 4 * step : 4 + 3 * step, segments = 4;
+        for (const auto& [periodic, segments] : {std::pair{false, size_t(1)}, {false, 4}, {true, 1}, {true, 2}, {true, 4}}) {
+            const size_t step = size_t(b.step), n = periodic ? segments * step : 4 + (segments - 1) * step;
+            if (n < 2) continue; // no curve
             const std::vector<Vec3d> p = randomPoints(rng, n);
             Diagnostics diag;
             const Matrix m = skewed();

@@ -225,6 +225,52 @@ TEST(RisProfiles, LightIsAsItsPhotometrySays) {
         EXPECT_NEAR(with({x, 0, 2}) / without({x, 0, 2}), want, .02) << x;
 }
 
+/// Two halves of the square, side by side; the first has the attributes.
+Moments half(const std::string& lights, const std::string& attributes, double x, Hider hider) {
+    writePaint();
+    Settings set;
+    set.hider = hider;
+    const auto part = [](const char* points) { return std::string("Bxdf \"rispaint\" \"b\"\nPolygon \"P\" [") + points + "]\n"; };
+    Scene s("WorldBegin\n" + lights + block(attributes + part("-1 -1 2  0 -1 2  0 1 2  -1 1 2")) +
+                part("0 -1 2  1 -1 2  1 1 2  0 1 2") + "WorldEnd\n",
+            set);
+    return s.estimate(rayTo({.5f, 0, 0}, {float(x), 0, 2}), samples(3000, 100'000));
+}
+
+// Each filter multiplies the light by a number of its own, so their product says which of them acted.
+TEST(RisLinks, FiltersActOnWhatSubscribesToTheirGroups) {
+    const std::string plain = "LightFilter \"PxrIntMultLightFilter\" \"f\" \"float intensity\" .5\n";
+    const std::string grouped =
+        "LightFilter \"PxrIntMultLightFilter\" \"g\" \"float intensity\" .2 \"string linkingGroups\" [\"a, b\"]\n";
+    const std::string subset = "Attribute \"lightfilter\" \"string subset\" [\"b\"]\n";
+    const std::string off = "EnableLightFilter \"l\" \"f\" 0\n";
+    const std::string lamp =
+        "AttributeBegin\n" + plain + grouped + "Translate 0 0 -1\nScale 40 40 1\nLight \"PxrRectLight\" \"l\"\nAttributeEnd\n";
+    const std::string sky = block(plain + grouped + "Light \"PxrDomeLight\" \"l\"");
+    const std::string distant =
+        block(plain + grouped + "Light \"PxrDistantLight\" \"l\" \"float intensity\" 3.14159265 \"int areaNormalize\" 1");
+    // At x = +-.5 of a plane 3 before it the lamp of 40 by 40 has the form factor of four rectangles from the foot: two of 20.5 x
+    // 20 and two of 19.5 x 20, which is the mean of two centred ones.
+    const double whole = .5 * (ofRectangle(20.5, 20, 3) + ofRectangle(19.5, 20, 3));
+    // A disk of half angle h has the solid angle 2 pi (1 - cos h), its light is divided by pi sin^2 h; loops take it from its
+    // middle.
+    const double middle = 1 / std::pow(std::cos(.53 / 4 / 180 * M_PI), 2);
+    const struct {
+        std::string text;
+        double path, loops;
+    } lights[] = {{lamp, whole, 0}, {sky, 1, 1}, {distant, 1, middle}};
+    for (const auto& [light, inPath, inLoops] : lights)
+        for (const Hider hider : {Hider::Path, Hider::Raytrace}) {
+            const double full = hider == Hider::Path ? inPath : inLoops;
+            if (full == 0) continue; // under raytrace lamps have other units
+            const double tolerance = .01;
+            expectMean(half(light, subset, -.5, hider), .1 * full, tolerance, light + "subscribes");
+            expectMean(half(light, subset, .5, hider), .5 * full, tolerance, light + "does not");
+            expectMean(half(light, subset + off, -.5, hider), .2 * full, tolerance, light + "one is off");
+            expectMean(half(light, off, -.5, hider), full, tolerance, light + "none");
+        }
+}
+
 TEST(RisLinks, SubsetsChooseLightsAndMutedOnesAreOff) {
     const std::string two =
         block("Attribute \"grouping\" \"string membership\" \"key\"\nLight \"PxrDomeLight\" \"a\" \"float intensity\" .5") +

@@ -68,6 +68,23 @@ TEST(Skies, ASunByArithmetic) {
     EXPECT_LT(a.se(), b.se() / 5);
 }
 
+// A sun as wide as the real one, .265 degrees of half angle, in a sky by arithmetic whose cells are .7 degrees wide: radiance L
+// over a cap of half angle a lights a floor under it with L sin^2 a. A light sample is uniform over the cells that the sun
+// touches, so its relative standard deviation is sqrt(1 / f - 1) if the sun fills the fraction f of them: 2.3 for two cells, each
+// way, and below 1 where parts of cells, .02 degrees wide, follow its edge.
+TEST(Skies, ASunBelowTheSizeOfCells) {
+    writeShader("smallsun", R"(light smallsun(vector up = vector "world" (0, 1, 0);) {
+    solar() Cl = normalize(-L) . up > 0.99998930399 ? 60000 : 0.1;
+}
+)");
+    const double half = .004625, want = .1 + 60000 * std::sin(half) * std::sin(half);
+    Scene s(lit("LightSource \"smallsun\" 1\n"), of(0));
+    const int n = samples(20000);
+    const Moments m = s.estimate(kView, n);
+    expectMean(m, want, .01, "a small sun");
+    EXPECT_LT(m.se() * std::sqrt(n), 1 * want);
+}
+
 TEST(Skies, EvenOnesAreLeftToRays) {
     Scene s(lit("LightSource \"envlight\" 1 \"float intensity\" 3\n"), withShaders(Hider::Path));
     Counters c;

@@ -21,7 +21,7 @@ Settings path(bool blocks = true) {
 
 /// As the renderer does it.
 GuideFigures guide(Scene& s, float brightness = 1, uint32_t count = 40000) {
-    PhotonEmission emission(s.world, {.all = true, .sky = false, .caustics = true, .learns = true}, s.diagnostics);
+    PhotonEmission emission(s.world, {.all = true, .sky = true, .caustics = true, .learns = true}, s.diagnostics);
     PhotonEmission::Thread thread(emission, s.diagnostics);
     std::vector<StoredPhoton> found;
     EXPECT_TRUE(thread.emit(0xfffffffeu, 0, 8000, 8000, found, nullptr));
@@ -178,6 +178,31 @@ TEST(CausticGuide, DrawsByItsDensity) {
     }
 }
 
+TEST(CausticGuide, FindsTogetherAsAlone) {
+    std::mt19937 random(5);
+    std::uniform_real_distribution<float> u(-1, 1);
+    std::vector<GuidePhoton> photons;
+    for (int i = 0; i < 5000; ++i) { // on four of six sides, most of them near a corner, so that leaves lie at different depths
+        const float far = i % 4 ? .1f : 1.f;
+        photons.push_back({Vec3(u(random), u(random), u(random)) * far, {0, 0, 3}, 1 + i % 4, .01f});
+    }
+    const CausticGuide guide(photons, 1);
+    int met = 0;
+    for (int turn = 0; turn < 200; ++turn) {
+        std::vector<SurfaceTree::Point> points;
+        for (size_t i = 0; i < size_t(turn) % SurfaceTree::kTogether + 1; ++i)
+            points.push_back({Vec3(u(random), u(random), u(random)) * (i % 5 == 4 ? 3.f : i % 2 ? .1f : 1.f), 1 + int(i) % 6});
+        if (turn == 7) points[0].P.y = NAN;
+        const CausticGuide::Cell* found[SurfaceTree::kTogether];
+        guide.find(points, found);
+        for (size_t i = 0; i < points.size(); ++i) {
+            EXPECT_EQ(found[i], guide.find(points[i].P, points[i].side));
+            met += found[i] != nullptr;
+        }
+    }
+    EXPECT_GT(met, 500);
+}
+
 TEST(CausticGuide, SendsByWhatTheEyeGets) {
     std::vector<GuidePhoton> photons(100, {{0, 0, 0}, {0, 1, 0}, SurfaceTree::sideOf({0, 1, 0}), .01f});
     for (size_t i = 0; i < photons.size(); ++i) photons[i].P = {float(i % 10), 0, float(i / 10)};
@@ -251,6 +276,42 @@ TEST(CausticGuide, ImageOfALampInAMirror) {
         else guideWrongly(s, {-2, 1.9f, -2}, {2, 2.1f, 2});
         expectMean(s.estimate(rayTo({.02f, 1.2f, 0}, {0, 2, 0}), samples(exact ? 40000 : 400000)), .5 * kImage, exact ? .02 : .06,
                    exact ? "learned" : "wrong");
+    }
+}
+
+// A small wall with a sky behind it, lit by the sky's image in a large mirror alone. Where the sky has radiance L c^k at an angle
+// of cosine c to an axis, and that axis is b off the wall's normal in the mirror, E / pi = 2 L cos b / (k + 2) (what the wall's
+// horizon and the mirror's edges cut off is below .6^k).
+TEST(CausticGuide, ImageOfASun) {
+    writeShader("sidesun", "light sidesun() { solar() { vector w = -normalize(L);"
+                           " Cl = 20 * pow(max(0, .8660254 * xcomp(w) + .5 * ycomp(w)), 200); } }\n");
+    Settings set = path();
+    set.maxDepth = 2; // the image, and nothing that the wall sends on
+    for (const bool exact : {true, false}) {
+        Scene s(inWorld("LightSource \"sidesun\" 1\nAttributeBegin " + kMirror +
+                        "Polygon \"P\" [-2 -3 -4  -2 -3 4  -2 5 4  -2 5 -4] AttributeEnd\nSurface \"matte\" \"float Ka\" 0 "
+                        "\"float Kd\" 1 Color .5 .5 .5 Polygon \"P\" [0 -.2 -.2  0 -.2 .2  0 .2 .2  0 .2 -.2]"),
+                set);
+        const CameraRay ray = rayTo({-1, .05f, .3f}, {0, 0, 0});
+        Counters n;
+        const Moments without = s.estimate(ray, samples(40000));
+        if (exact) EXPECT_GT(guide(s, .01f).photons, 500u);
+        else guideWrongly(s, {-.2f, -.2f, -.2f}, {.2f, .2f, .2f});
+        const Moments guided = s.estimate(ray, samples(exact ? 40000 : 400000), &n);
+        expectMean(guided, .5 * 20 * .8660254 * 2 / 202, exact ? .01 : .06, exact ? "learned" : "wrong");
+        EXPECT_GT(n.guided, 0u);
+        if (exact) EXPECT_LT(guided.se(), .3 * without.se());
+    }
+}
+
+// No ray meets a light without size, so its photons would only aim rays in vain.
+TEST(CausticGuide, LightsThatNoRayMeetsDoNotGuide) {
+    const std::string mirror = "AttributeBegin " + kMirror + kMirrorBelow + "AttributeEnd\nSurface \"matte\" " + kCeiling;
+    for (const std::string light :
+         {"LightSource \"pointlight\" 2 \"from\" [0 1 0]\n", "LightSource \"distantlight\" 2 \"to\" [0 -1 0]\n"}) {
+        Scene alone(inWorld(light + mirror), path()), withLamp(inWorld(light + kLampDown + mirror), path());
+        EXPECT_EQ(guide(alone, .01f).photons, 0u) << light;
+        EXPECT_GT(guide(withLamp, .01f).photons, 0u) << light;
     }
 }
 

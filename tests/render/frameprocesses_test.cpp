@@ -162,7 +162,8 @@ TEST_F(Processes, MemoryIsTakenAtOnceUpToALimit) {
         frame(p, nothing, [&] {
             const uint64_t before = ownBytes();
             fillHeap(bytes, true);
-            const uint64_t grown = ownBytes() - std::min(ownBytes(), before), most = std::min(bytes, limits::kHeapAtOnce);
+            const uint64_t after = ownBytes(), most = std::min(bytes, limits::kHeapAtOnce);
+            const uint64_t grown = after - std::min(after, before);
             if (before == 0) return p.say(message("memory is not known"));
             p.say(message(grown <= most + (size_t(24) << 20) ? "bounded" : std::to_string(grown)));
         });

@@ -162,4 +162,40 @@ TEST(Frames, BadOptionsAreReported) {
     EXPECT_EQ(read("Format 70000 10 1")->only().code, Rie::Limit);
 }
 
+// The world of the archive is drawn as it stands, whatever the edits say.
+TEST(Frames, EditsOfAWorldAreLeftOut) {
+    const std::string archive = "ArchiveBegin \"baked\"\nWorldBegin\nColor 1 0 0\nSphere 1 -1 1 360\nWorldEnd\nArchiveEnd\n";
+    auto c = read(archive + "Format 30 20 1\nEditWorldBegin \"baked\" \"string rerenderer\" \"raytrace\"\n"
+                            "EditBegin \"attribute\" \"string scopename\" \"ball\"\nEditAttributeBegin \"ball\"\nColor 0 1 0\n"
+                            "Sphere 2 -2 2 360\nNoSuchRequest 3\nEditAttributeEnd\nEditEnd\nEditBegin \"null\"\nEditEnd\n"
+                            "EditWorldEnd\nFormat 10 10 1\n");
+    ASSERT_EQ(c->frames.size(), 1u);
+    EXPECT_EQ(c->frames[0]->options.xres, 30);
+    ASSERT_EQ(c->frames[0]->primitives.size(), 1u);
+    EXPECT_EQ(c->frames[0]->primitives[0]->attributes->color, Color(1, 0, 0));
+    EXPECT_NE(c->messages().find("the world of the archive is drawn as it stands"), std::string::npos) << c->messages();
+    EXPECT_EQ(read("EditWorldEnd")->only().code, Rie::Nesting);
+    EXPECT_EQ(read("EditWorldBegin \"nowhere.rib\"\nEditWorldEnd")->diagnostics.errors(), 1);
+    const auto open =
+        read(archive + "EditWorldBegin \"baked\"\nEditBegin \"null\"\nEditWorldEnd\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+    EXPECT_EQ(open->diagnostics.errors(), 1) << open->messages();
+    EXPECT_EQ(open->frames.size(), 2u);
+}
+
+// JPatch writes "catmullrom"; RenderMan 22 names its cameras PxrPerspective, PxrCamera and PxrOrthographic.
+TEST(Frames, NamesOfOtherProgramsMeanTheSame) {
+    const auto options = [](const std::string& text, size_t warnings) {
+        auto c = read(text + "\nBasis \"catmullrom\" 1 \"bspline\" 1\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+        EXPECT_EQ(c->count(), warnings) << c->messages();
+        EXPECT_EQ(c->primitive().attributes->ubasis.name, "catmull-rom");
+        EXPECT_EQ(c->primitive().attributes->vbasis.name, "b-spline");
+        return c->frame().options;
+    };
+    EXPECT_EQ(options("PixelFilter \"catmullrom\" 4 4", 0).filter.name, "catmull-rom");
+    EXPECT_EQ(options("PixelFilter \"RiGaussianFilter\" 2 2", 0).filter.name, "gaussian");
+    EXPECT_EQ(options("Projection \"PxrPerspective\" \"float fov\" 30", 0).fov, 30);
+    EXPECT_EQ(options("Projection \"PxrCamera\" \"float fov\" 30 \"float tilt\" 3", 1).projection, "perspective");
+    EXPECT_EQ(options("Projection \"PxrOrthographic\"", 0).projection, "orthographic");
+}
+
 } // namespace frames_test

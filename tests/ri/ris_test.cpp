@@ -3,6 +3,7 @@
 #include "ri/lightfilters.h"
 #include "ri/oslnetwork.h"
 #include "ri/ris.h"
+#include "scene/filterlink.h"
 #include "scene/network.h"
 #include <filesystem>
 #include <fstream>
@@ -166,16 +167,53 @@ TEST(Ris, WhatIsLeftOutIsSaidOnce) {
     for (const Diagnostic& d : c->diagnostics.all()) EXPECT_EQ(d.severity, Severity::Warning);
 }
 
-TEST(Ris, SubsetsOfLightFiltersAreSaidOnce) {
-    const std::string ball =
-        "AttributeBegin\nAttribute \"lightfilter\" \"string subset\" [\"rods\"]\nSphere 1 -1 1 360\nAttributeEnd\n";
-    const auto c = inWorld("LightFilter \"PxrRodLightFilter\" \"f\"\nLight \"PxrDomeLight\" \"l\"\n" + ball + ball);
-    int warnings = 0;
-    for (const Diagnostic& d : c->diagnostics.all())
-        if (d.severity == Severity::Warning) ++warnings;
-    EXPECT_EQ(warnings, 1) << c->messages();
-    EXPECT_NE(c->messages().find("lightfilter:subset is not obeyed"), std::string::npos) << c->messages();
-    EXPECT_EQ(inWorld("Light \"PxrDomeLight\" \"l\"\n" + ball)->messages().find("not obeyed"), std::string::npos); // no filters
+// Pixar's manual, "Writing Light Filters": a filter without groups acts everywhere, one with groups where a subset names one.
+TEST(Ris, LightFiltersActByTheirGroups) {
+    const auto acts = [](const std::string& groups, const std::string& attributes) {
+        const auto c = inWorld(attributes + "\nSphere 1 -1 1 360");
+        return scene::FilterLink{"l", "f", groups}.acts(c->primitive().attributes.get());
+    };
+    const std::string subset = "Attribute \"lightfilter\" \"string subset\" [\"gobos, rods\"]\n";
+    const std::string without = "Attribute \"lightfilter\" \"string excludesubset\" ";
+    const std::string off = "EnableLightFilter \"l\" \"f\" 0\n";
+    EXPECT_TRUE(acts("", ""));
+    EXPECT_TRUE(acts("", subset));
+    EXPECT_FALSE(acts("rods", ""));
+    EXPECT_TRUE(acts("rods", subset));
+    EXPECT_TRUE(acts("barns +rods", subset));
+    EXPECT_FALSE(acts("rod", subset));
+    EXPECT_FALSE(acts("rods", subset + without + "[\"rods\"]"));
+    EXPECT_FALSE(acts("", without + "[\"f\"]"));
+    EXPECT_TRUE(acts("", without + "[\"g\"]"));
+    EXPECT_FALSE(acts("", off));
+    EXPECT_FALSE(acts("rods", subset + off));
+    EXPECT_TRUE(acts("", off + "EnableLightFilter \"l\" \"f\" 1"));
+    EXPECT_TRUE(acts("", "EnableLightFilter \"k\" \"f\" 0\nEnableLightFilter \"l\" \"g\" 0"));
+    EXPECT_TRUE((scene::FilterLink{"l", "f", ""}.acts(nullptr)));
+    EXPECT_FALSE((scene::FilterLink{"l", "f", "rods"}.acts(nullptr)));
+}
+
+TEST(Ris, LinksOfLightFiltersAreTextsOfTheirLights) {
+    const std::string lights =
+        "LightFilter \"PxrRodLightFilter\" \"f\" GROUPS\nLight \"PxrDomeLight\" \"l\"\nSphere 1 -1 1 360\n";
+    const auto links = [&](const std::string& groups, const std::string& more) {
+        std::string text = lights;
+        text.replace(text.find("GROUPS"), 6, groups);
+        const auto c = inWorld(text + more);
+        EXPECT_EQ(c->count(), 0u) << c->messages();
+        const scene::Param* p = scene::find(c->frame().lights[0].shader->params, "lightFilterLinks");
+        return p ? p->strings.at(0) : "";
+    };
+    EXPECT_EQ(links("", ""), ""); // all act on everything: the light asks nothing
+    const auto link = scene::FilterLink::of(links("\"string linkingGroups\" [\"rods\"]", ""));
+    ASSERT_TRUE(link.has_value());
+    EXPECT_EQ(link->light, "l");
+    EXPECT_EQ(link->filter, "f");
+    EXPECT_EQ(link->groups, "rods");
+    EXPECT_NE(links("", "EnableLightFilter \"l\" \"f\" 0\n"), "");
+    EXPECT_NE(links("", "Attribute \"lightfilter\" \"string excludesubset\" [\"f\"]\n"), "");
+    EXPECT_FALSE(scene::FilterLink::of("Kd").has_value());
+    EXPECT_FALSE(scene::FilterLink::of("lightfilter\nl\nf").has_value());
 }
 
 TEST(Ris, SampleFilterPxrCryptomatteNamesAPicture) {

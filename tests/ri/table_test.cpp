@@ -205,6 +205,7 @@ TEST(Table, EverySampleExecutesInItsScope) {
             ASSERT_NE(b, nullptr);
             before = begin + " " + std::string(b->sample) + "\n";
         }
+        if (name.starts_with("EditWorld")) before = "ArchiveBegin \"part.rib\"\nColor 1 0 0\nArchiveEnd\n" + before;
         std::string whole = before + text + after;
         bool ownWorld = name.starts_with("World") || name.starts_with("Frame");
         if (!ownWorld && !(r.scopes & kBase)) whole = "WorldBegin\n" + whole + "WorldEnd\n";

@@ -108,6 +108,9 @@ const Counts kCounts[] = {
     {"Curves \"cubic\" [4 7] \"nonperiodic\" \"P\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]", 2, 5, 11,
      5},
     {"Curves \"cubic\" [6] \"periodic\" \"P\" [0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0 0]", 1, 2, 6, 2},
+    // Three points, step 3: one segment, which ends where it begins.
+    {"Curves \"cubic\" [3] \"periodic\" \"P\" [0 0 0 0 0 0 0 0 0]", 1, 1, 3, 1},
+    {"PatchMesh \"bicubic\" 3 \"periodic\" 4 \"nonperiodic\" \"Pz\" [0 0 0 0 0 0 0 0 0 0 0 0]", 1, 2, 12, 2},
     {"Blobby 2 [1001 0 1001 16 0 2 0 1] [1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 1 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1] [\"\"]", 1, 2, 2, 2},
 };
 } // namespace

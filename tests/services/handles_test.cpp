@@ -234,6 +234,14 @@ TEST(DefaultSpaces, UnknownOnesAreSaidWhereTheyStand) {
     EXPECT_NE(r.said.find("unknown coordinate system \"elsewhere\""), std::string::npos) << r.said;
 }
 
+TEST(DefaultSpaces, UnknownOnesAreSaidAtTheParameterThatNamesThem) {
+    writeShader("spaceempty", "surface spaceempty(string map = \"\";\n    string in = \"\";)\n{ Oi = 1; if (map == \"\") Ci = "
+                              "color(xcomp(transform(in, P)), 0, 0); }\n");
+    const Seen r = seen("Surface \"spaceempty\"\n");
+    EXPECT_NE(r.said.find("spaceempty.sl:2:17"), std::string::npos) << r.said;
+    EXPECT_NE(r.said.find("unknown coordinate system \"\""), std::string::npos) << r.said;
+}
+
 TEST(OpenParameters, ReadBehindTheirDefaultWhereTheSceneGivesMore) {
     writeShader("openread", "surface openread(float a[] = {1}; color c[] = {};) { Oi = 1; float x = 0; if (arraylength(a) > 2) x "
                             "= a[2]; Ci = color(x, a[5], u * 0) + c[1]; }\n");

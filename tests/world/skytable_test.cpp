@@ -3,7 +3,8 @@
 #include "base/exact.h"
 #include "statistics/chisquare.h"
 #include "statistics/nightly.h"
-#include "world/skytable.h"
+#include "world/skysampler.h"
+#include <array>
 #include <cmath>
 #include <gtest/gtest.h>
 #include <random>
@@ -11,6 +12,7 @@
 namespace skytable_test {
 
 using namespace alpenglow;
+using world::SkySampler;
 using world::SkyTable;
 
 namespace {
@@ -19,7 +21,23 @@ struct Sky {
     const char* name;
     int width, height;
     std::vector<float> weights;
+    std::vector<SkyTable::Refined> refined = {};
 };
+
+/// A sky with refined cells at both poles and between, one of them black but for two parts.
+Sky refinedSky() {
+    std::mt19937 rng(5);
+    std::uniform_real_distribution<float> one(0, 1);
+    Sky s{"refined cells", 16, 8, {}};
+    for (int i = 0; i < 16 * 8; ++i) s.weights.push_back(one(rng));
+    for (const auto& [column, row, side] : {std::array{3, 2, 4}, {0, 0, 2}, {15, 7, 8}, {4, 2, 32}}) {
+        SkyTable::Refined r{column, row, side, {}};
+        for (int i = 0; i < side * side; ++i)
+            r.weights.push_back(side == 32 ? (i == 40 || i == 555) * 4e4f : std::exp(6 * one(rng)));
+        s.refined.push_back(std::move(r));
+    }
+    return s;
+}
 
 std::vector<Sky> skies() {
     std::mt19937 rng(3);
@@ -72,6 +90,71 @@ TEST(SkyTable, DensitiesOfCells) {
                 sum += pdf * cellOf(s, y);
             }
         EXPECT_NEAR(sum, 1, 1e-5) << s.name;
+    }
+}
+
+TEST(SkyTable, PartsOfRefinedCells) {
+    const Sky s = refinedSky();
+    const SkyTable table(s.width, s.height, s.weights, s.refined);
+    const auto meanOf = [](const SkyTable::Refined& r) {
+        double sum = 0;
+        for (const float w : r.weights) sum += w;
+        return sum / double(r.weights.size());
+    };
+    double total = 0;
+    for (int i = 0; i < s.width * s.height; ++i) {
+        double weight = s.weights[size_t(i)];
+        for (const SkyTable::Refined& r : s.refined)
+            if (r.row * s.width + r.column == i) weight = meanOf(r);
+        total += weight * cellOf(s, i / s.width);
+    }
+    EXPECT_NEAR(table.integral(), total, 1e-6 * total);
+    for (const SkyTable::Refined& r : s.refined) {
+        const double mean = meanOf(r), part = cellOf(s, r.row) / (r.side * r.side), of = mean * cellOf(s, r.row) / total;
+        double all = 0;
+        for (const float w : r.weights) all += std::max<double>(w, SkyTable::kLeastPart * mean);
+        for (int y = 0; y < r.side; ++y)
+            for (int x = 0; x < r.side; ++x) {
+                const double weight = std::max<double>(r.weights[size_t(y * r.side + x)], SkyTable::kLeastPart * mean);
+                const Vec3 w = SkyTable::direction(r.column, r.row, s.width, s.height, (float(x) + .5f) / float(r.side),
+                                                   (float(y) + .5f) / float(r.side));
+                // Shares of floats from 0 to 1: those of a cell and of its part are good to 2^-24 or so.
+                EXPECT_NEAR(table.pdf(w) * part, of * weight / all, 4e-7) << r.side << ": " << x << " " << y;
+            }
+    }
+}
+
+TEST(SkyTable, FrequenciesOfParts) {
+    const Sky s = refinedSky();
+    const SkyTable table(s.width, s.height, s.weights, s.refined);
+    const int n = teststat::samples(400'000, 4'000'000);
+    std::mt19937 rng(unsigned(teststat::seedBase()) + 13);
+    std::uniform_real_distribution<float> one(0, 0x1.fffffep-1f);
+    std::vector<std::vector<double>> seen;
+    for (const SkyTable::Refined& r : s.refined) seen.push_back(std::vector<double>(size_t(r.side * r.side)));
+    for (int i = 0; i < n; ++i) {
+        Vec3 w;
+        float pdf;
+        ASSERT_TRUE(table.sample({one(rng), one(rng)}, w, pdf));
+        ASSERT_EQ(pdf, table.pdf(w));
+        const double turn = std::atan2(double(w.y), double(w.x)) / (2 * kPi), x = (turn < 0 ? turn + 1 : turn) * s.width;
+        const double y = std::acos(double(w.z)) / kPi * s.height; // rows are even in the angle, parts in z
+        for (size_t k = 0; k < s.refined.size(); ++k) {
+            const SkyTable::Refined& r = s.refined[k];
+            if (int(x) != r.column || int(y) != r.row) continue;
+            const double top = std::cos(kPi * r.row / s.height), end = std::cos(kPi * (r.row + 1) / s.height);
+            const int down = std::clamp(int((double(w.z) - top) / (end - top) * r.side), 0, r.side - 1);
+            seen[k][size_t(down * r.side + std::clamp(int((x - r.column) * r.side), 0, r.side - 1))]++;
+        }
+    }
+    for (size_t k = 0; k < s.refined.size(); ++k) {
+        const SkyTable::Refined& r = s.refined[k];
+        for (int i = 0; i < r.side * r.side; ++i) {
+            const Vec3 w = SkyTable::direction(r.column, r.row, s.width, s.height, (float(i % r.side) + .5f) / float(r.side),
+                                               (float(i / r.side) + .5f) / float(r.side));
+            const double expected = n * double(table.pdf(w)) * cellOf(s, r.row) / (r.side * r.side);
+            EXPECT_NEAR(seen[k][size_t(i)], expected, 6 * std::sqrt(expected) + 6) << r.side << ": " << i;
+        }
     }
 }
 
@@ -132,6 +215,76 @@ TEST(SkyTable, BlackSkiesAndEnds) {
                 EXPECT_NEAR(length(w), 1, 1e-6) << s.name;
             }
     }
+}
+
+/// A sky of 64 x 32 cells: `bright` in four cells, two of them refined with a dark half, and `dim` elsewhere.
+Sky sunnySky(float bright, float dim) {
+    Sky s{"a sun", 64, 32, std::vector<float>(64 * 32, dim)};
+    for (const int column : {40, 41})
+        for (const int row : {9, 10}) {
+            s.weights[size_t(row * 64 + column)] = row == 10 ? bright : 0; // replaced where refined
+            if (row == 9) s.refined.push_back({column, row, 2, {dim, dim, bright, bright}});
+        }
+    return s;
+}
+
+TEST(SkySampler, BrightDirectionsAreAStratum) {
+    const Sky s = sunnySky(1000, 1);
+    const SkySampler sky(s.width, s.height, s.weights, s.refined);
+    const SkyTable whole(s.width, s.height, s.weights, s.refined);
+    EXPECT_EQ(sky.integral(), whole.integral());
+    EXPECT_EQ(sky.concentration(), whole.concentration());
+    const double mean = (1000 + 1) / 2., bright = mean * cellOf(s, 9) * 2 + 1000 * cellOf(s, 10) * 2,
+                 rest = sky.integral() - bright;
+    EXPECT_NEAR(bright / sky.integral(), .66, .01);
+    EXPECT_EQ(sky.brightChance(), .75f); // the nearest multiple of 1/4
+    const auto pdfAt = [&](int column, int row, float t) {
+        return sky.pdf(SkyTable::direction(column, row, s.width, s.height, .5f, t));
+    };
+    EXPECT_NEAR(pdfAt(41, 10, .3f), .75 * 1000 / bright, 1e-5 * 1000 / bright);
+    EXPECT_NEAR(pdfAt(20, 5, .3f), .25 / rest, 1e-5 / rest);
+    const double least = SkyTable::kLeastPart * mean, parts = (1000 + least) / 2; // mean of the parts, with the least density
+    EXPECT_NEAR(pdfAt(40, 9, .75f), .75 * 1000 * (mean / parts) / bright, 1e-5 * 1000 / bright);
+    EXPECT_NEAR(pdfAt(40, 9, .25f), .75 * least * (mean / parts) / bright, 1e-5 * 1000 / bright);
+    // Of rows of numbers with u.y in n equal steps, exactly three quarters lie in bright cells.
+    int found = 0, all = 0;
+    const auto isBright = [&](const Vec3& w) {
+        const double turn = std::atan2(double(w.y), double(w.x)) / (2 * kPi);
+        const int column = int((turn < 0 ? turn + 1 : turn) * s.width), row = int(std::acos(double(w.z)) / kPi * s.height);
+        return (column == 40 || column == 41) && (row == 9 || row == 10);
+    };
+    for (int y = 0; y < 16; ++y)
+        for (int x = 0; x < 16; ++x) {
+            Vec3 w;
+            float pdf;
+            ASSERT_TRUE(sky.sample({(float(x) + .37f) / 16, (float(y) + .61f) / 16}, w, pdf));
+            EXPECT_EQ(pdf, sky.pdf(w));
+            found += isBright(w);
+            ++all;
+            ASSERT_TRUE(sky.sampleBright({(float(x) + .37f) / 16, (float(y) + .61f) / 16}, w, pdf));
+            EXPECT_TRUE(isBright(w));
+        }
+    EXPECT_EQ(found, all * 3 / 4);
+}
+
+TEST(SkySampler, OneTableWhereNothingIsGained) {
+    // An even sky; one lit by its sun alone; one whose sun has little of the light.
+    for (const Sky& s : {sunnySky(1, 1), sunnySky(3000, 1e-3f), sunnySky(30, 1)}) {
+        const SkySampler sky(s.width, s.height, s.weights, s.refined);
+        const SkyTable whole(s.width, s.height, s.weights, s.refined);
+        EXPECT_EQ(sky.brightChance(), 0);
+        for (const Vec2 u : {Vec2(.1f, .9f), Vec2(.7f, .33f), Vec2(.999f, .5f)}) {
+            Vec3 a, b;
+            float p = 0, q = 0;
+            EXPECT_EQ(sky.sample(u, a, p), whole.sample(u, b, q));
+            EXPECT_EQ(a, b);
+            EXPECT_EQ(p, q);
+        }
+    }
+    Vec3 w;
+    float pdf;
+    EXPECT_FALSE(SkySampler(64, 32, sunnySky(1, 1).weights).sampleBright({.5f, .5f}, w, pdf));
+    EXPECT_TRUE(SkySampler(64, 32, sunnySky(3000, 1e-3f).weights).sampleBright({.5f, .5f}, w, pdf));
 }
 
 } // namespace skytable_test

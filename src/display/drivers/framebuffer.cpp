@@ -14,9 +14,10 @@ class Framebuffer : public PictureDriver {
 
 } // namespace
 
-const DriverDescriptor framebufferDriver{{"framebuffer", "it", "idisplay", "rgbframebuffer", "x11", "windows"},
-                                         "A window. Without a viewer a picture file is written under the given name, by its "
-                                         "extension (as for \"file\"), with a message.",
-                                         []() -> std::unique_ptr<Driver> { return std::make_unique<Framebuffer>(); }};
+const DriverDescriptor framebufferDriver{
+    {"framebuffer", "it", "idisplay", "i-display", "piqsl", "iv", "rgbframebuffer", "x11", "windows"},
+    "A window. Without a viewer a picture file is written under the given name, by its "
+    "extension (as for \"file\"), with a message.",
+    []() -> std::unique_ptr<Driver> { return std::make_unique<Framebuffer>(); }};
 
 } // namespace alpenglow::display

@@ -17,10 +17,11 @@ class Other : public PictureDriver {
 
 } // namespace
 
-const DriverDescriptor otherDriver{
-    {"targa", "tga", "bmp", "bitmap", "gif", "sgi", "iff", "alias", "cineon", "avs", "pic", "dspy_s_avs", "texture"},
-    "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by "
-    "its extension (as for \"file\"), with a message.",
-    []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
+const DriverDescriptor otherDriver{{"targa", "tga",       "bmp", "bitmap", "gif",   "sgi",        "sgif",   "iff",      "mayaiff",
+                                    "alias", "cineon",    "dpx", "rla",    "psd",   "xpm",        "ppm",    "radiance", "rgbe",
+                                    "hdr",   "softimage", "avs", "pic",    "picio", "dspy_s_avs", "texture"},
+                                   "Formats that are not written here (Targa, BMP, ...): a picture file under the given name, by "
+                                   "its extension (as for \"file\"), with a message.",
+                                   []() -> std::unique_ptr<Driver> { return std::make_unique<Other>(); }};
 
 } // namespace alpenglow::display

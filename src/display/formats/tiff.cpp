@@ -438,7 +438,7 @@ static bool encodeTiff(OutputFile& out, const Image& m, const WriteOptions& o, D
 PictureFormat tiffFormat() {
     static const WrittenFormat kWritten{.name = "TIFF",
                                         .extensions = {"tif", "tiff"},
-                                        .displays = {"tiff"},
+                                        .displays = {"tiff", "tif"},
                                         .doc = "TIFF. 8 bits when Quantize's codes end at 255 or below, 16 bits to 65535, floats "
                                                "when it is off (one = 0). Parameter: "
                                                "\"string compression\" none, lzw, packbits, zip (default)."};

@@ -66,6 +66,13 @@ constexpr NamedBasis kBases[] = {
     {"power", 4, {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}},
 };
 
+/// Some programs write the names without the hyphen.
+bool isBasis(const std::string& spelled, std::string_view name) {
+    const size_t hyphen = name.find('-');
+    return spelled == name || (hyphen != std::string_view::npos &&
+                               spelled == std::string(name.substr(0, hyphen)) + std::string(name.substr(hyphen + 1)));
+}
+
 bool oneBasis(Interpreter& in, const Call& c, size_t i, scene::Basis& out) {
     int step = c.integer(i + 1);
     if (!within(in, c, step >= 1 && step <= 4, "a step must be 1 to 4")) return false;
@@ -76,7 +83,7 @@ bool oneBasis(Interpreter& in, const Call& c, size_t i, scene::Basis& out) {
         return true;
     }
     for (const NamedBasis& b : kBases) {
-        if (c.text(i) != b.name) continue;
+        if (!isBasis(c.text(i), b.name)) continue;
         out.name = b.name;
         std::copy(&b.m[0][0], &b.m[0][0] + 16, &out.m[0][0]);
         return true;
@@ -173,6 +180,7 @@ std::string membership(const std::string& before, const std::string& change) {
 
 void attribute(Interpreter& in, const Call& c) {
     const std::string& category = c.text(0);
+    if (category == "lightfilter") in.linksFilters();
     for (scene::Param& p : in.bind(c, Use::Attribute, category)) {
         std::string key = category + ":" + p.name;
         auto& values = in.attributes().values;

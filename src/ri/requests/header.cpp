@@ -126,8 +126,10 @@ std::string prototypes(const Request& r) {
 } // namespace
 
 bool withoutCall(std::string_view request) {
-    static constexpr std::string_view kOfFiles[] = {"version",     "teapot",      "EditBegin",    "EditEnd",
-                                                    "ShaderLayer", "Procedural2", "ErrorHandler", "ConnectShaderLayers"};
+    static constexpr std::string_view kOfFiles[] = {
+        "version",        "teapot",       "EditBegin",          "EditEnd",
+        "EditWorldBegin", "EditWorldEnd", "EditAttributeBegin", "EditAttributeEnd",
+        "ShaderLayer",    "Procedural2",  "ErrorHandler",       "ConnectShaderLayers"};
     return std::find(std::begin(kOfFiles), std::end(kOfFiles), request) != std::end(kOfFiles);
 }
 

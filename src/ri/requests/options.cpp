@@ -1,4 +1,5 @@
 // Camera, display and other options (RISpec 3.2, 4.1).
+#include "base/filternames.h"
 #include "base/limits.h"
 #include "ri/interpreter.h"
 #include "ri/motion.h"
@@ -40,7 +41,17 @@ void format(Interpreter& in, const Call& c) {
 
 void projection(Interpreter& in, const Call& c) {
     scene::ParamList params = in.bind(c, Use::Other);
-    const std::string& name = c.text(0);
+    // PRMan 22's plug-ins: of the camera with a tilt, distortion and the like the perspective alone.
+    static constexpr std::pair<std::string_view, const char*> kOthers[] = {
+        {"PxrPerspective", "perspective"}, {"PxrCamera", "perspective"}, {"PxrOrthographic", "orthographic"}};
+    std::string name = c.text(0);
+    for (const auto& [other, same] : kOthers)
+        if (name == other) {
+            name = same;
+            for (const scene::Param& p : params)
+                if (p.name != "fov")
+                    in.incapable(c, fmt::format("\"{}\" of {} is not done by this version: it has no effect", p.name, other));
+        }
     if (name != "perspective" && name != "orthographic" && name != "stereo" && name != "null" && !name.empty()) {
         in.reporter.error(Rie::Incapable, c.place, fmt::format("projection \"{}\" is not known: the one before stays", name),
                           "perspective, stereo or orthographic");
@@ -98,14 +109,15 @@ void pixelFilter(Interpreter& in, const Call& c) {
     static const std::vector<std::string> kFilters = {
         "box",  "triangle", "catmull-rom",           "b-spline",        "gaussian", "sinc", "bessel",
         "disk", "mitchell", "separable-catmull-rom", "blackman-harris", "lanczos"};
-    if (std::find(kFilters.begin(), kFilters.end(), c.text(0)) == kFilters.end()) {
+    const std::string name = filterNameOf(c.text(0));
+    if (std::find(kFilters.begin(), kFilters.end(), name) == kFilters.end()) {
         std::string near = nearestName(c.text(0), kFilters);
         in.reporter.error(Rie::BadToken, c.place, fmt::format("PixelFilter: \"{}\" is not known", c.text(0)),
                           near.empty() ? "" : "did you mean " + near + "?");
         return;
     }
     if (within(in, c, c.number(1) > 0 && c.number(2) > 0, "the widths must be positive"))
-        in.options.filter = {c.text(0), c.real(1), c.real(2)};
+        in.options.filter = {name, c.real(1), c.real(2)};
 }
 
 void quantize(Interpreter& in, const Call& c) {

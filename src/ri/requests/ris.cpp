@@ -89,8 +89,6 @@ void sampleFilter(Interpreter& in, const Call& c) {
     in.options.mattes[c.text(1)] = std::move(d);
 }
 
-void enableLightFilter(Interpreter& in, const Call&) { in.isRis(); }
-
 } // namespace
 
 std::vector<Request> risRequests() {
@@ -114,7 +112,8 @@ std::vector<Request> risRequests() {
          "A filter of the lights that follow, up to the AttributeEnd: what it lets through (docs/ris.md).",
          "\"PxrRodLightFilter\" \"f\" \"float edge\" .1", [](Interpreter& in, const Call& c) { in.lightFilter(c); }},
         {"EnableLightFilter", "string light; string filter; int on", Kind::Light, any, false,
-         "Has no effect: a filter is on for the lights that follow it.", "\"l\" \"f\" 1", enableLightFilter},
+         "Whether a filter of a light acts on the light that the primitives that follow receive, whatever its groups.",
+         "\"l\" \"f\" 1", [](Interpreter& in, const Call& c) { in.enableFilter(c); }},
         {"Integrator", named, Kind::Other, any, false,
          "How light is followed: by path, with the settings that it has, too; direct light, occlusion, or what surfaces are.",
          "\"PxrPathTracer\" \"i\" \"int maxPathLength\" 6", integrator},

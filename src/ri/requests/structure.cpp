@@ -45,6 +45,10 @@ void solidBegin(Interpreter& in, const Call& c) {
         op == std::end(kOperations) ? scene::SolidOperation::Union : scene::SolidOperation(op - std::begin(kOperations)), c);
 }
 
+void edit(Interpreter& in, const Call& c) {
+    if (in.begin(BlockKind::Edit, c)) in.incapable(c, "edits are read as ordinary requests");
+}
+
 void errorHandler(Interpreter& in, const Call& c) {
     const std::string& h = c.text(0);
     if (h != "ignore" && h != "print" && h != "printonce" && h != "abort")
@@ -100,12 +104,19 @@ std::vector<Request> structureRequests() {
         {"Resource", "string handle; string type; ..", Kind::Attribute, all, false,
          "Type \"attributes\": saves or restores (\"string operation\") a subset of the attributes.",
          "\"a\" \"attributes\" \"string operation\" \"save\"", [](Interpreter& in, const Call& c) { in.resource(c); }},
-        {"EditBegin", "..", Kind::Structure, bf, false, "Start of a re-rendering edit; its requests are read as usual.",
-         "\"string type\" \"attribute\"",
-         [](Interpreter& in, const Call& c) {
-             if (in.begin(B::Edit, c)) in.incapable(c, "edits are read as ordinary requests");
-         }},
+        {"EditWorldBegin", "string name; ..", Kind::Structure, bf, false,
+         "Re-rendering of the world of an archive (PRMan): it is read and drawn; edits of it, up to EditWorldEnd, are left out.",
+         "\"part.rib\" \"string rerenderer\" \"raytrace\"", [](Interpreter& in, const Call& c) { in.editWorld(c); }},
+        {"EditWorldEnd", "", Kind::Structure, all, false, "End of the edits of a world.", "",
+         [](Interpreter& in, const Call& c) { in.endEditWorld(c); }},
+        {"EditBegin", "string type?; ..", Kind::Structure, bf, false,
+         "Start of a re-rendering edit; outside of EditWorldBegin its requests are read as usual.",
+         "\"attribute\" \"string scopename\" \"ball\"", edit},
         {"EditEnd", "", Kind::Structure, all, false, "End of an edit.", "", endBlock<B::Edit>},
+        {"EditAttributeBegin", "string name", Kind::Structure, all, false,
+         "Start of the edits of the attributes of that name; outside of EditWorldBegin they are read as usual.", "\"ball\"",
+         edit},
+        {"EditAttributeEnd", "", Kind::Structure, all, false, "End of the edits of attributes.", "", endBlock<B::Edit>},
         {"IfBegin", "string expression; ..", Kind::Structure, all, false, "What follows is done when the expression is true.",
          "\"1 == 1\"", nothing},
         {"ElseIf", "string expression; ..", Kind::Structure, all, false, "Otherwise, when this one is.", "\"0\"", nothing},

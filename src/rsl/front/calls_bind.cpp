@@ -55,11 +55,11 @@ const Signature* withPattern(Expr& e, const Shadeop& op, const Signature* signat
 } // namespace
 
 /// What is the same for all points when the arguments are: whether a message was found, what a file or the frame says, a length,
-/// and a picture read where the arguments say. What an argument holds that is put out does not count.
+/// what a text is like, and a picture read where the arguments say. What an argument holds that is put out does not count.
 bool Checker::uniformResult(const Expr& e, const Choice& choice) const {
     const Shadeop& op = *choice.shadeop;
     if (op.name == "arraylength" || op.name == "capacity" || op.name == "textureinfo") return e.kind == ExprKind::ShadeopCall;
-    if (op.section == kPluginSection) return true;
+    if (op.section == kPluginSection || op.name == "match" || op.name == "stringhash") return true;
     static const std::set<std::string_view> kOfThePoint = {"gridmin", "gridmax", "readaov", "evalparam"};
     if (op.section == "Messages") return !kOfThePoint.count(op.name);
     return (op.name == "texture" || op.name == "environment") && e.args.size() > 1;

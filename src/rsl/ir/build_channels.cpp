@@ -95,6 +95,13 @@ Inst* Builder::channelValue(const std::string& name, Type& type) {
         (isTriple ? tripleKey : greyKey) = key;
     }
     if (!triple || !grey || type.array) return get(c->first);
+    // Names that are known when the shader is compiled leave calls of the other type without effect.
+    const auto never = [&](const std::string& key) { return isConst(get(channels_.at(flagOf(key)).first), 0); };
+    if (never(tripleKey) || never(greyKey)) {
+        const auto* only = never(tripleKey) ? grey : triple;
+        type = only->second;
+        return get(only->first);
+    }
     const auto given = [&](const std::string& key) {
         return emit(Op::NotEqual, Kind::Bool, {get(channels_.at(flagOf(key)).first), constant(0)});
     };

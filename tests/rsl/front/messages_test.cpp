@@ -338,4 +338,8 @@ TEST(Lint, UniformUnderVaryingConditions) {
     EXPECT_EQ(linted("surface s(float k = 1;) {\nuniform float n = 0;\nif (k > 0.5)\nn = 1;\nCi = n;\n}"), Ids());
 }
 
+TEST(Lint, CallsWithUniformArgumentsAreUniform) {
+    EXPECT_EQ(linted("surface s(string a = \"x\";) {\nuniform float n = match(\"x\", a) + stringhash(a);\nCi = n;\n}"), Ids());
+}
+
 } // namespace messages_test

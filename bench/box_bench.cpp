@@ -237,7 +237,7 @@ void compareWithOracle(Box& box, const BenchArguments& a) {
 
 /// Rays of the box through our structure and through Embree alone.
 void compareRays(Box& box) {
-    const accel::Accel& accel = *static_cast<const world::WorldImpl&>(*box.world).accel_;
+    const accel::Accel& accel = static_cast<const world::WorldImpl&>(*box.world).accel();
     bench::BareEmbree bare(accel.shapes());
     for (int bounces : {0, 1, 3}) {
         std::vector<accel::Ray> rays = recordRays(box, accel, bounces);

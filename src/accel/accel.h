@@ -59,6 +59,8 @@ struct Hit {
 using geometry::Plane;
 struct DirectRays;
 
+/// The acceleration structure over all shapes of a world, and the rules of what counts as a hit. Results do not depend on the
+/// tree, the lanes or the order of rays.
 class Accel {
 public:
     /// shapes must have been diced (geometry/dice.h); the Accel keeps them. visibility: a mask for each shape, or empty for kAll.
@@ -66,6 +68,7 @@ public:
     /// reported: sound() is then false, and no ray hits anything.
     Accel(std::vector<geometry::ShapeRef> shapes, std::vector<uint32_t> visibility, Diagnostics&, bool quick = false);
     ~Accel();
+    /// Whether it could be built.
     bool sound() const;
     Accel(const Accel&) = delete;
     Accel& operator=(const Accel&) = delete;
@@ -74,10 +77,12 @@ public:
     struct Levels {
         float from = 0, to = 1;
     };
+    /// One for each shape.
     void setLevels(std::vector<Levels>);
 
     /// Restricts hits on parts of CSG solids (scene/solids.h) to the boundary of the solid. Call before tracing.
     void makeSolids(Diagnostics&);
+    /// Whether some shape is a part of a solid, so that keeps() may be false.
     bool hasSolids() const;
     /// Returns false if the shape's surface at this point (camera space) is not part of a solid's boundary.
     bool keeps(uint32_t shape, const Vec3& point, const Vec3& normal, float time) const;
@@ -89,6 +94,7 @@ public:
     /// The same for arrays; rays and results have equal length. stop: once set, the call returns within some milliseconds,
     /// however many shapes a ray hits; results are then undefined or unchanged.
     void intersect(std::span<const Ray>, std::span<Hit>, const StopFlag* stop = nullptr) const;
+    /// occluded() for each ray: 1 or 0.
     void occluded(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
 
     /// intersect() for rays of which consecutive ones are coherent, such as camera rays: the same hits.
@@ -106,6 +112,7 @@ public:
     /// unknown.
     bool reachesInto(std::span<const Plane>) const;
 
+    /// As given to the constructor.
     const std::vector<geometry::ShapeRef>& shapes() const;
     /// The surface point of a hit, at the hit's time.
     geometry::SurfacePoint point(const Hit& h) const {
@@ -113,6 +120,7 @@ public:
         point(h, p);
         return p;
     }
+    /// The same in place; `needs`: geometry::PointNeed, what is to be computed.
     void point(const Hit& h, geometry::SurfacePoint& out, uint32_t needs = geometry::kNeedAll) const {
         const geometry::HitRef at{h.prim, h.b1, h.b2, &out, h.time};
         shapes()[h.shape]->points({&at, 1}, needs);
@@ -155,10 +163,12 @@ template <class Wanted>
     }
     return true;
 }
+/// The same for every t.
 inline bool intersectTriangle(const Vec3d& org, const Vec3d& d, const Vec3d& a, const Vec3d& b, const Vec3d& c, double& t,
                               double& b1, double& b2, double& outside) {
     return intersectTriangle(org, d, a, b, c, t, b1, b2, outside, [](double) { return true; });
 }
+/// The same for points in float.
 inline bool intersectTriangle(const Vec3& org, const Vec3& dir, const Vec3& a, const Vec3& b, const Vec3& c, double& t,
                               double& b1, double& b2, double& outside) {
     return intersectTriangle(Vec3d(org), Vec3d(dir), Vec3d(a), Vec3d(b), Vec3d(c), t, b1, b2, outside);

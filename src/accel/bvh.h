@@ -26,6 +26,7 @@ struct Box;
 /// to about ten rays per triangle. Hits are the same.
 enum class Building { Best, Quick };
 
+/// The tree. Immutable after build().
 class Bvh {
 public:
     static constexpr int kWidth = 8; ///< children of a node
@@ -34,6 +35,7 @@ public:
     /// Largest coordinate of a triangle. Farther boxes would overflow the distances in float, so that every ray visits every
     /// leaf.
     static constexpr float kFarthest = 1e30f;
+    /// Whether a corner is beyond kFarthest, or NaN.
     static bool reaches(const Vec3& p) {
         return !(std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest && std::fabs(p.z) <= kFarthest);
     }
@@ -42,6 +44,7 @@ public:
     using Child = uint32_t;
     static constexpr Child kLeaf = 0x80000000u, kExact = 0x40000000u, kIndex = 0x3fffffffu, kNothing = 0xffffffffu;
 
+    /// Eight children and their boxes, relative to the node's own.
     struct alignas(128) Node {
         float origin[4]; ///< boxes: origin + scale * q
         float scale[4];
@@ -49,6 +52,7 @@ public:
         uint8_t q[2][3][kWidth]; ///< by side (lower, upper) and axis
         uint8_t spare[16];
     };
+    /// Up to six triangles over eight vertices.
     struct alignas(128) Leaf {
         float p[3][kLeafVertices]; ///< by axis
         /// Three bits for the index of a vertex. Those of triangle k are the lowest bits of half k & 1 after a shift by 9 * (k >>
@@ -56,7 +60,9 @@ public:
         uint64_t corners;
         uint32_t id[kLeafTriangles]; ///< triangles, numbered over all shapes
         uint32_t size() const { return uint32_t(corners >> 59); }
+        /// Where the three bits of a corner begin in `corners`.
         static int cornerAt(size_t triangle, int corner) { return int(32 * (triangle & 1) + 9 * (triangle >> 1)) + 3 * corner; }
+        /// The index of a corner among the vertices of the leaf.
         uint32_t vertex(uint32_t triangle, int corner) const { return uint32_t(corners >> cornerAt(triangle, corner)) & 7; }
         Vec3 point(uint32_t v) const { return {p[0][v], p[1][v], p[2][v]}; }
     };
@@ -67,6 +73,7 @@ public:
         uint32_t shape, prim;
     };
     static constexpr uint32_t kPart = 0x80000000u;
+    /// A part of a shape with its own tree, as it appears in this one.
     struct Part {
         geometry::Bounds bounds;
         uint32_t shape;
@@ -108,6 +115,7 @@ public:
         return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) + exact_.size() * sizeof(Exact) +
                capsules_.size() * sizeof(geometry::Capsule);
     }
+    /// What a child of kind kExact means.
     const Exact& exact(uint32_t index) const { return exact_[index]; }
     const Exact* exacts() const { return exact_.data(); }
     /// Capsules around exact primitives, by the same index; null: none. Infinite radius: unknown.

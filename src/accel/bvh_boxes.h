@@ -12,6 +12,7 @@ inline Four least(Four a, Four b) { return a < b ? a : b; }
 inline Four most(Four a, Four b) { return a > b ? a : b; }
 inline constexpr float kHuge = 3e38f;
 
+/// A box under construction, empty at first; the fourth lane is not used.
 struct Box {
     Four lo{kHuge, kHuge, kHuge, kHuge}, hi{-kHuge, -kHuge, -kHuge, -kHuge};
     void add(Four l, Four h) { lo = least(lo, l), hi = most(hi, h); }

@@ -24,9 +24,11 @@ struct Cut {
     bool isBelow(Four twiceCentre) const {
         return !((twiceCentre[axis] - from[axis]) * scale[axis] >= float(bin)); // true for NaN
     }
+    /// By axis: the bin that contains the centre.
     Whole4 binsOf(Four twiceCentre) const { return stepsOf(twiceCentre, from, scale, all4(float(bins - 1))); }
 };
 
+/// The cut of least cost by the surface area heuristic; axis -1 if all centres are in one bin.
 Cut bestCut(const Ref* refs, const Range&);
 /// Moves references below a cut to the front; returns the start of the others. a, b: boxes of their centres.
 size_t partition(Ref* refs, const Range&, const Cut&, Range& a, Range& b);

@@ -5,6 +5,7 @@
 
 namespace alpenglow::accel {
 
+/// A node of the upper levels.
 struct Half {
     Range range;
     int left = -1, right = -1; ///< -1: a group

@@ -24,6 +24,7 @@ struct Ref {
     Four twiceCentre() const { return lo + hi; }
 };
 
+/// Consecutive references, the box of their contents, and the box of their centres (twice their value).
 struct Range {
     size_t begin = 0, end = 0; ///< of references
     Box box, centres;
@@ -33,6 +34,7 @@ struct Range {
 
 /// For one primitive of an exact shape; NaN bounds become infinite.
 Ref refOf(uint32_t id, const geometry::Bounds&);
+/// Whether a box is beyond Bvh::kFarthest: such references are left out.
 inline bool tooFar(const Ref& r) {
     return Bvh::reaches({r.lo[0], r.lo[1], r.lo[2]}) || Bvh::reaches({r.hi[0], r.hi[1], r.hi[2]});
 }

@@ -10,6 +10,7 @@ namespace alpenglow::accel {
 struct Ray;
 struct DirectScene;
 
+/// The triangles of a tiny scene.
 class DirectTriangles {
 public:
     static constexpr size_t kMost = 24; ///< triangles; with more the tree is faster

@@ -35,6 +35,7 @@ struct alignas(64) DirectHits {
     uint32_t blocked = 0;                    ///< by any(): rays that certainly hit a triangle
 };
 
+/// The searches of one lane width; `rays`: those of the block to search, as bits. All widths give the same hits.
 struct DirectSearch {
     /// Finds the nearest triangle, and the spheres that may be hit before it.
     void (*nearest)(const DirectScene&, const DirectRays&, uint32_t rays, DirectHits&);

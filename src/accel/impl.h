@@ -15,12 +15,14 @@ namespace alpenglow::accel {
 using geometry::Shape;
 using geometry::ShapeRef;
 
+/// The nearest candidate so far, in units of the ray's direction.
 struct Best {
     double t;
     uint32_t shape, prim;
     double b1, b2;
 };
 
+/// A ray under way, and what it has found.
 struct Query {
     const Ray* ray;
     Best best;
@@ -28,6 +30,7 @@ struct Query {
     const StopFlag* stop = nullptr; ///< ends long searches in solids; may be null
 };
 
+/// The order of hits: by distance, then shape, then primitive.
 inline bool before(double t, uint32_t shape, uint32_t prim, const Best& b) {
     if (t != b.t) return t < b.t;
     if (shape != b.shape) return shape < b.shape;
@@ -50,6 +53,7 @@ inline double edgeRoom(const Vec3d& org, const Vec3d& d, const Vec3d& fa, const 
     return den > 0 ? kEdge + 0x1p-48 * norm(a) * norm(d) * (norm(e1) + norm(e2)) / den : 0;
 }
 
+/// Whether a ray is finite and has a direction; others hit nothing.
 inline bool usable(const Vec3& org, const Vec3& dir) {
     // An infinite far end is usual; other infinite values or NaN would traverse every box.
     constexpr float kFar = 1e18f;
@@ -60,6 +64,7 @@ inline bool usable(const Vec3& org, const Vec3& dir) {
 }
 inline bool usable(const Ray& r) { return bool(int(r.tnear < r.tfar) & int(usable(r.org, r.dir))); }
 
+/// The shapes, their tree or their list, and the tests of candidates.
 struct Accel::Impl {
     std::vector<ShapeRef> shapes;
     std::vector<uint32_t> visibility;
@@ -68,10 +73,12 @@ struct Accel::Impl {
     bool sound = true;
     Bvh tree;
     std::unique_ptr<Solids> solids; ///< null: there are none
+    /// Whether the shape is a part of a solid.
     bool ofSolid(uint32_t s) const { return solids && solids->in(s); }
 
     std::vector<geometry::QuadricForm> forms; ///< of shapes that have one
     std::vector<uint32_t> formNumbers;        ///< by shape: index in forms, or kNone; empty: no forms
+    /// Fills `forms`.
     void readyForms();
     const geometry::QuadricForm* formOf(uint32_t s) const {
         return formNumbers.empty() || formNumbers[s] == kNone ? nullptr : &forms[formNumbers[s]];
@@ -86,27 +93,40 @@ struct Accel::Impl {
     bool direct = false;
     DirectTriangles triangles;
     std::vector<Ball> balls;
+    /// The bounding sphere of an exact shape.
     Ball ballAround(uint32_t shape) const;
+    /// Prepares a scene without a tree; false: it has too many primitives.
     bool readyDirect();
+    /// Reports that there are too many primitives for a tree; nothing is hit then.
     void refuse(Diagnostics&);
+    /// Warns of triangles that Bvh::beyond() left out.
     static void sayBeyond(const Bvh&, const Shape& first, Diagnostics&);
+    /// Searches the primitives of a scene without a tree.
     void intersectDirect(Query&) const;
     /// The same for blocks of rays (directblock.cpp).
     std::shared_ptr<const DirectScene> blockScene; ///< null: the scene has a tree
     bool anyOneSided = false;                      ///< some shape is one-sided
+    /// Fills blockScene.
     void readyBlocks();
+    /// Whether 16 rays can be searched together.
     bool takesBlocks() const;
+    /// Whether a ray fits a block: new, finite, without a subset, and from both sides unless no shape is one-sided.
     bool beginsPlainly(const Ray&) const;
+    /// Copies rays into a block; returns those that fit it, as bits.
     uint32_t loadBlock(std::span<const Ray>, DirectRays&) const;
+    /// Accel::intersect() by blocks; rays that fit none are traced one by one.
     void nearestInBlocks(std::span<const Ray>, std::span<Hit>) const;
+    /// Accel::occluded() by blocks.
     void anyInBlocks(std::span<const Ray>, std::span<uint8_t>) const;
     void nearestInBlock(const DirectRays&, uint32_t rays, const float* time, Hit*) const;
     void anyInBlock(const DirectRays&, uint32_t rays, const float* time, uint8_t*) const;
 
+    /// Whether the ray considers a shape at all: by mask, subset and level of detail.
     bool visible(const Ray& r, uint32_t s) const {
         return (visibility[s] & r.mask) != 0 && (!r.only || r.only[s]) &&
                (levels.empty() || (r.level >= levels[s].from && r.level < levels[s].to));
     }
+    /// Whether the primitive is the one that the ray ignores.
     static bool excluded(const Ray& r, uint32_t s, uint32_t prim) {
         return r.excludeShape == s && (r.excludePrim == kNone || r.excludePrim == prim);
     }
@@ -165,6 +185,7 @@ struct Accel::Impl {
         return std::max(near,
                         std::pair(s, prim) < std::pair(r.excludeShape, r.excludePrim) ? r.passed : std::nextafter(r.passed, 0.0));
     }
+    /// Which hits on an exact primitive are needed: all where a rule may reject the nearest.
     Shape::Wanted wantedOf(const Query& q, uint32_t s, const Shape& shape) const {
         return (shape.oneSided() && q.ray->sides != Sides::Both) || ofSolid(s) ? Shape::Wanted::All
                : q.any                                                         ? Shape::Wanted::Any
@@ -195,6 +216,7 @@ struct Accel::Impl {
     };
     std::vector<std::unique_ptr<Geometry>> geometries;
     std::vector<uint32_t> geometryOf; ///< by shape: index in geometries, or kNone; empty: no instances
+    /// Whether the shape is an instanced geometry.
     bool isPlaced(uint32_t s) const { return !geometryOf.empty() && geometryOf[s] != kNone; }
     const Geometry& geometryAt(uint32_t s) const { return *geometries[geometryOf[s]]; } ///< of an instanced shape
     /// An instance of a geometry with a tree, prepared for rays.
@@ -208,12 +230,14 @@ struct Accel::Impl {
     };
     std::vector<Place> places; ///< Bvh::Exact::shape of a part is an index in it
     bool placesMove = false;   ///< some of them move or deform
+    /// Fills geometries and places.
     void readyPlaced();
     /// Boxes of instances, each of a part of the geometry's tree: a ray visits the parts that it may hit, nearest first, and
     /// skips overlapping ones (Benthin, Woop, Wald, Afra, "Improved Two-Level BVHs using Partial Re-Braiding", HPG 2017).
     std::vector<Bvh::Part> partsOfPlaces();
     void buildTree(Building b = Building::Best) { tree.build(shapes, {}, {}, partsOfPlaces(), b); } ///< after readyPlaced()
     std::vector<const Shape*> trimmed; ///< by shape: trim information, or null; empty: none
+    /// Fills `trimmed`.
     void readyTrimmed();
     /// A ray in the space of an instanced geometry.
     struct Inside {
@@ -228,7 +252,9 @@ struct Accel::Impl {
     bool intersectInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
     bool sameCrossing(const Query&, const Inside&, double t, const Vec3d corner[3]) const;
 
+    /// One ray, by tree or list.
     bool intersectOne(const Ray&, Hit&) const;
+    /// One ray, whether it hits anything.
     bool occludedOne(const Ray&) const;
     /// plain: with the baseline instruction set.
     void walkNearest(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;

@@ -10,10 +10,12 @@
 
 namespace alpenglow::accel {
 
+/// All solids of a world.
 class Solids {
 public:
     /// Null if no shape belongs to a solid with more than one part.
     static std::unique_ptr<Solids> of(const std::vector<geometry::ShapeRef>&, Diagnostics&);
+    /// Whether the shape is a part of a solid.
     bool in(uint32_t shape) const { return partOf_[shape] != kNone; }
     /// Whether the solid starts or ends where the ray crosses the shape's surface. stop: once it is set, the result is undefined;
     /// may be null. A ray through very many surfaces takes long.

@@ -37,6 +37,7 @@ ChildResult runChildModule(const std::string& file, const char* name, uint64_t m
 
 /// The size of what was written, and all of it from `from` on; false: it could not be read.
 size_t writtenBytes(const ChildResult&);
+/// Copies `bytes` of it, from byte `from` on, to `to`; false: so many cannot be read.
 bool readWritten(const ChildResult&, void* to, size_t bytes, size_t from = 0);
 
 } // namespace alpenglow

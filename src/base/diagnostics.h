@@ -57,6 +57,7 @@ struct FixIt {
     std::string text;
 };
 
+/// One message to the user: what is wrong, where, and what would help.
 struct Diagnostic {
     Severity severity = Severity::Error;
     Rie code = Rie::NoError;
@@ -83,6 +84,7 @@ public:
     using Handler = std::function<void(const Diagnostic&)>;
     /// Without a handler diagnostics are only stored.
     explicit Diagnostics(Handler h = {});
+    /// Stores a diagnostic, counts it and passes it to the handler.
     void report(Diagnostic d);
     void report(Severity s, Rie code, SourcePlace place, std::string message, std::string hint = {});
     /// Reports only the first diagnostic with this key ("unknown things are reported once each").
@@ -92,7 +94,9 @@ public:
     /// From now on warnings and errors are ignored (RiErrorIgnore; RISpec 3.2, 7.2), or no more. Severe ones never are.
     void ignore(bool on);
     int ignored() const; ///< warnings and errors that were
+    /// A copy of all so far, in the order of the reports.
     std::vector<Diagnostic> all() const;
+    /// Replaces the handler. It is not called for earlier diagnostics.
     void setHandler(Handler h);
 
 private:

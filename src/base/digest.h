@@ -13,14 +13,17 @@ namespace alpenglow {
 class Digest {
 public:
     Digest();
+    /// Appends a piece of the data.
     void add(const void* data, size_t bytes);
     void add(std::string_view text) { add(text.data(), text.size()); }
+    /// The digest of all pieces so far; more may follow.
     uint64_t value() const;
 
 private:
     alignas(64) std::array<std::byte, 576> state_; ///< XXH3_state_t
 };
 
+/// The digest of complete data.
 uint64_t digest(std::string_view bytes);
 /// Sixteen hexadecimal digits.
 std::string digestText(uint64_t);

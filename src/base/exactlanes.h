@@ -9,6 +9,7 @@ template <class V> using MaskOf = decltype(V() < V()); ///< -1 or 0 by lane; als
 
 /// Converts integral |x| < 2^31: after adding 1.5 x 2^52 they are in the low bits.
 template <class V> AL_EXACT MaskOf<V> wholeLanes(V x) { return __builtin_bit_cast(MaskOf<V>, x + 0x1.8p52) & 0xffffffffll; }
+/// |x|: clears the sign, also of zeros and NaN.
 template <class V> AL_EXACT V absoluteLanes(V x) {
     return __builtin_bit_cast(V, __builtin_bit_cast(MaskOf<V>, x) & 0x7fffffffffffffffll);
 }

@@ -40,10 +40,12 @@ template <int Bits> double fromFixed(Int128 v) {
 /// overflow. The caller must exclude non-finite terms.
 class ExactSum {
 public:
+    /// Adds a finite term, rounded to a multiple of 2^-64.
     void add(double d) {
         Int128 term = toFixed<64>(d, &saturated_);
         addWide(UInt128(term), term < 0 ? -1 : 0);
     }
+    /// Adds another sum. The result does not depend on the order of terms and sums.
     void merge(const ExactSum& o) {
         addWide(o.low_, o.top_);
         saturated_ |= o.saturated_;

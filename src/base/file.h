@@ -46,8 +46,11 @@ public:
     bool write(const void* bytes, size_t n);
     /// Returns the number of bytes read (for formats that patch their output).
     size_t read(void* bytes, size_t n);
+    /// Sets the position of the next read or write, in bytes from the start. False as write().
     bool seek(uint64_t position);
+    /// The current position, in bytes from the start.
     uint64_t tell();
+    /// The bytes of the file so far; the position stays.
     uint64_t size();
     bool ok() const { return error_ == 0; }
     /// Flushes, syncs, renames. Returns false after an error, which is reported; the old file is then intact and the temporary

@@ -40,10 +40,13 @@ struct HiderDescription {
 
 /// Sorted by name. The category "user" takes every name, so it is in neither table.
 std::span<const OptionDescription> knownOptions();
+/// Attributes, "category:name".
 std::span<const OptionDescription> knownAttributes();
+/// Parameters of the request Hider, of all hiders.
 std::span<const OptionDescription> knownHiderParameters();
 /// Those that every display driver reads; what one driver alone reads is in its own descriptor.
 std::span<const OptionDescription> knownDisplayParameters();
+/// The hiders by their main names; the docs name the aliases.
 std::span<const HiderDescription> knownHiders();
 
 /// The entry of that name, or null.
@@ -53,6 +56,7 @@ struct PlainValue {
     std::vector<float> numbers;
     std::vector<std::string> texts;
 };
+/// Reads a value as RIB writes it, with or without brackets.
 PlainValue plainValue(std::string_view text);
 /// For hints: the names of a category ("trace" gives "maxdepth", ...), or for "" the categories themselves.
 std::vector<std::string> knownNames(std::span<const OptionDescription> table, std::string_view category);

@@ -5,6 +5,7 @@
 
 namespace alpenglow {
 
+/// m[row][column]; the identity by default.
 struct Matrix {
     double m[4][4] = {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}};
     friend bool operator==(const Matrix& a, const Matrix& b);
@@ -14,11 +15,14 @@ struct Matrix {
 Matrix operator*(const Matrix& a, const Matrix& b);
 /// Inverse; identity and *singular = true when the determinant is 0 or not finite.
 Matrix inverse(const Matrix& a, bool* singular = nullptr);
+/// Of all four rows.
 double determinant(const Matrix& a);
 /// Sign of the determinant of the upper 3x3: negative = the transform swaps handedness.
 double determinant3(const Matrix& a);
 
+/// p' = p + (x, y, z).
 Matrix translateMatrix(double x, double y, double z);
+/// p' = (x p.x, y p.y, z p.z).
 Matrix scaleMatrix(double x, double y, double z);
 /// Rotation by degrees about an axis through the origin; +z: x' = x cos - y sin, y' = x sin + y cos.
 Matrix rotateMatrix(double degrees, double x, double y, double z);

@@ -19,10 +19,14 @@ public:
     void askOne(const SampleNumbers& s, uint32_t vertex, uint32_t site, uint32_t occurrence) {
         ask(s, vertex, site << 1 | SampleNumbers::kSingle, occurrence);
     }
+    /// Computes the numbers of all requests since clear().
     void draw();
+    /// The result of request i, of two numbers in [0, 1); valid after draw().
     Vec2 pair(size_t i) const { return {blocks_[i / kSize].x[i % kSize], blocks_[i / kSize].y[i % kSize]}; }
+    /// The result of request i, of one number; valid after draw().
     float one(size_t i) const { return blocks_[i / kSize].x[i % kSize]; }
     size_t size() const { return count_; }
+    /// Forgets all requests; memory is kept.
     void clear() { count_ = 0; }
 
 private:

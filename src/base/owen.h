@@ -55,10 +55,12 @@ template <class U> constexpr U sobol1Reversed(U i) {
     return i ^ ((i >> 1) & U(0x55555555u));
 }
 
+/// 128 bits as four words; U: uint32_t or a vector of them.
 template <class U> struct Words4 {
     U x, y, z, w;
 };
 
+/// One round of pcg4d, without its shifts.
 template <class U> constexpr Words4<U> roundOfWords(Words4<U> v) {
     v.x = v.x + v.y * v.w;
     v.y = v.y + v.z * v.x;
@@ -96,6 +98,7 @@ template <class U> struct Scrambles {
     constexpr U shuffledIndex(U reversedIndex) const { return reverseBits<U>(owenReversed<U>(reversedIndex, s.x, s.w)); }
     /// The coordinates of the point of that index, 32-bit binary fractions.
     constexpr U first(U index) const { return reverseBits<U>(scrambleReversed<U>(index, s.y, more.y, more.w)); }
+    /// The second coordinate.
     constexpr U second(U index) const {
         return reverseBits<U>(scrambleReversed<U>(sobol1Reversed<U>(index), s.z, more.z, (more.w << 16) | (more.w >> 16)));
     }

@@ -12,7 +12,9 @@ namespace alpenglow {
 /// Tasks that may run on other threads until wait() returns, which rethrows an exception of a task.
 class TaskGroup {
 public:
+    /// Starts task(), on this thread or another.
     template <class Task> void run(Task task) { group_.run(std::move(task)); }
+    /// Returns when all tasks have ended.
     void wait() { group_.wait(); }
 
 private:

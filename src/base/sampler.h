@@ -60,6 +60,7 @@ public:
         low_ = uint32_t(key);
         high_ = uint32_t(key >> 32);
     }
+    /// Sampler::get2() and get1() for this sample.
     Vec2 get2(uint32_t vertex, uint32_t site, uint32_t occurrence) const {
         const Scrambles<uint32_t> s(streamWords<uint32_t>(low_, high_, vertex, site << 1, occurrence));
         const uint32_t i = s.shuffledIndex(reverseBits<uint32_t>(index_));

@@ -57,10 +57,13 @@ using Vec3 = Vec3T<float>;
 using Vec3d = Vec3T<double>;
 using Color = Vec3T<float>; ///< linear RGB, Rec. 709 primaries; radiance where nothing else is said
 
+/// The scalar product.
 template <class T> constexpr T dot(const Vec3T<T>& a, const Vec3T<T>& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+/// a x b. Right-handed components: in the left-handed spaces of RenderMan the result follows the left hand.
 template <class T> constexpr Vec3T<T> cross(const Vec3T<T>& a, const Vec3T<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
+/// The Euclidean length. Squares are not scaled: components beyond about 1e19 in float overflow.
 template <class T> T length(const Vec3T<T>& a) { return std::sqrt(dot(a, a)); }
 /// Unit vector along a; a itself when its length is zero (RSL normalize).
 template <class T> Vec3T<T> normalize(const Vec3T<T>& a) {
@@ -69,15 +72,18 @@ template <class T> Vec3T<T> normalize(const Vec3T<T>& a) {
 }
 /// Rec. 709 luminance of a linear colour.
 template <class T> constexpr T luminance(const Vec3T<T>& c) { return T(0.2126) * c.x + T(0.7152) * c.y + T(0.0722) * c.z; }
+/// The largest of the three components.
 template <class T> constexpr T maxComponent(const Vec3T<T>& c) {
     T m = c.x > c.y ? c.x : c.y;
     return m > c.z ? m : c.z;
 }
 
+/// Two numbers: a sample, or a position on a surface or in a map.
 struct Vec2 {
     float x = 0, y = 0;
 };
 
+/// |x|, |y|, |z|.
 template <class T> Vec3T<T> absolute(const Vec3T<T>& c) { return {std::fabs(c.x), std::fabs(c.y), std::fabs(c.z)}; }
 /// Unit vector along a; the fallback where a has no direction (zero, infinite or NaN length).
 template <class T> Vec3T<T> normalizeOr(const Vec3T<T>& a, const Vec3T<T>& fallback) {

@@ -11,6 +11,7 @@
 
 namespace alpenglow {
 
+/// An element and everything in it.
 struct XmlElement {
     std::string name;
     std::vector<std::pair<std::string, std::string>> attributes; ///< in their order, entities replaced

@@ -16,6 +16,7 @@ public:
     double total() const;
     /// density(): sampling density at a distance, per unit of area; choose(): samples a distance from numbers in [0, 1).
     double density(double distance) const;
+    /// A distance from two numbers in [0, 1), with that density.
     double choose(float which, float u) const;
 
 private:

@@ -42,6 +42,7 @@ struct LobeValue {
     float pdf = 0;   ///< density of sample() per solid angle
 };
 
+/// A lobe by name, with its description for the manual and its code.
 struct LobeKind {
     std::string_view name;
     std::string_view doc;
@@ -53,8 +54,10 @@ struct LobeKind {
 
     // A single evaluation; see Bsdf.
     bool isDelta(const LobeParams&) const;
+    /// LobeValue::fcos.
     float fcos(const LobeParams&, Vec3 w) const;
     float pdf(const LobeParams&, Vec3 w) const;
+    /// False: there is no direction.
     bool sample(const LobeParams&, Vec2 u, Vec3& w) const;
     float albedo(const LobeParams&) const;
     float spread(const LobeParams&) const;
@@ -92,11 +95,13 @@ public:
         int kind = 0, at = 0;
     };
     BsdfBatch();
+    /// Removes all lobes; memory is kept.
     void clear();
     Place add(const LobeKind&, const LobeParams&,
               const DistributionParams* more = nullptr); ///< `more`: replaces LobeParams::more
     /// Call after the last add(), before queries. Call again after further add().
     void prepare();
+    /// Bsdf::albedo(), spread() and delta(); after prepare().
     float albedo(Place p) const { return block(p).rows[kRowAlbedo][lane(p)]; }
     float spread(Place p) const { return block(p).rows[kRowSpread][lane(p)]; }
     bool delta(Place p) const { return block(p).rows[kRowDelta][lane(p)] != 0; }
@@ -112,7 +117,9 @@ public:
         b.in[0][l] = w.x, b.in[1][l] = w.y, b.in[2][l] = w.z;
         note(p, b);
     }
+    /// Answers all queries of values since the last evaluate() or sample().
     void evaluate();
+    /// The answer to a query of a value.
     LobeValue value(Place p) const {
         const Block& b = block(p);
         const int l = lane(p);
@@ -125,6 +132,7 @@ public:
         b.in[0][l] = u.x, b.in[1][l] = u.y;
         note(p, b);
     }
+    /// Answers all queries of directions.
     void sample();
     /// Returns false if the sample has no direction.
     bool drawn(Place p, Vec3& w) const {
@@ -155,6 +163,7 @@ private:
     std::vector<Kind> kinds_;
 };
 
+/// All lobes, by LobeKind::index.
 std::span<const LobeKind* const> lobeKinds();
 /// The lobe that trace() or a lighting shadeop knows by this name; null if unknown.
 const LobeKind* findLobe(std::string_view name);

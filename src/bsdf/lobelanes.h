@@ -74,6 +74,7 @@ struct LobeLanes {
     /// Samples directions by u (2 rows, [0, 1)) into `drawn` (kDrawnRows). kRowDrawn is 0 if there is none.
     void (*sample)(const float* block, uint32_t lanes, const float* u, float* drawn);
 };
+/// The code of all lobes for one width.
 struct LobeLanesList {
     const LobeLanes* lobes = nullptr; ///< in order of lobeKinds()
     int count = 0;

@@ -14,6 +14,7 @@ struct Basis {
         t = {1 + s * n.x * n.x * a, s * b, -s * n.x};
         u = {b, s + n.y * n.y * a, -n.y};
     }
+    /// A vector given by its components along t, u and n.
     Vec3 toWorld(Vec3 v) const { return t * v.x + u * v.y + n * v.z; }
 };
 

@@ -17,6 +17,7 @@ struct ChannelDiff {
     size_t nonFinite = 0;
 };
 
+/// What a comparison found.
 struct DiffResult {
     std::vector<ChannelDiff> channels;
     ChannelDiff all;  ///< over every sample; its name is "all"

@@ -43,6 +43,7 @@ public:
     virtual bool close(Diagnostics&) = 0;
 };
 
+/// What there is to know about a driver.
 struct DriverDescriptor {
     std::vector<std::string> names; ///< display types it answers to, any case
     std::string doc;                ///< for the manual: what it writes, which parameters it reads

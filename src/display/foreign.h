@@ -12,6 +12,7 @@ namespace alpenglow::display {
 /// Data between the two sides, in this order: this structure, `channels` names of kForeignName bytes, then width * height *
 /// channels floats, for grids as many for each slice.
 inline constexpr int kForeignName = 64;
+/// The header that the module writes before the numbers; the layout is part of its interface.
 struct ForeignPicture {
     uint32_t stamp; ///< kForeignStamp
     int32_t width, height, channels;
@@ -41,11 +42,13 @@ struct ForeignLimits {
 using ReadForeignPicture = int (*)(const char* path, int to, const ForeignLimits*, char* why, int whySize);
 inline constexpr const char* kReadForeignPicture = "alpenglow_read_picture";
 
+/// One of the two modules.
 struct ForeignModule {
     const char *file, *variable; ///< its name; the environment variable that names another file
     const char* needs;           ///< package to install, for messages
     std::string known;           ///< formats that work without it, for messages
 };
+/// The module of OpenImageIO, and the one of OpenVDB.
 const ForeignModule& pictureModule();
 const ForeignModule& gridModule();
 

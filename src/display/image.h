@@ -35,6 +35,7 @@ struct Image {
 
     int channelCount() const { return int(channels.size()); }
     size_t sampleCount() const { return size_t(width) * size_t(height) * channels.size(); }
+    /// The channels of a pixel; row 0 is the upper one. No check of the range.
     float* pixel(int x, int y) { return data.data() + (size_t(y) * size_t(width) + size_t(x)) * channels.size(); }
     const float* pixel(int x, int y) const { return data.data() + (size_t(y) * size_t(width) + size_t(x)) * channels.size(); }
     /// Index of a channel, or -1.

@@ -24,6 +24,7 @@ struct WrittenFormat {
     std::vector<std::string> displays;   ///< display types that write it always
     std::string doc;                     ///< for the manual of display types
 };
+/// The description of a format.
 const WrittenFormat& written(Format);
 /// The name for messages.
 inline const char* toString(Format f) { return written(f).name; }
@@ -31,8 +32,10 @@ inline const char* toString(Format f) { return written(f).name; }
 std::span<const Format> writtenFormats();
 /// The names of all formats that are read, in one line.
 std::string readFormats();
+/// How a file stores a number; integers stand for 0 to 1.
 enum class Sample { UInt8, UInt16, Half, Float };
 
+/// What is read of a file besides its pixels.
 struct ReadOptions {
     bool levels = false; ///< also the reduced levels of a MIP-mapped file
     SourcePlace place;   ///< where the file was named

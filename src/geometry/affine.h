@@ -13,7 +13,9 @@ struct Affine {
     explicit Affine(const Matrix& a)
         : x(a.m[0][0], a.m[0][1], a.m[0][2]), y(a.m[1][0], a.m[1][1], a.m[1][2]), z(a.m[2][0], a.m[2][1], a.m[2][2]),
           o(a.m[3][0], a.m[3][1], a.m[3][2]) {}
+    /// The image of a direction: without the translation.
     Vec3d vector(const Vec3d& v) const { return x * v.x + y * v.y + z * v.z; }
+    /// The image of a point.
     Vec3d point(const Vec3d& p) const { return vector(p) + o; }
     /// v times the transpose of the 3x3 part. Of the inverse: a normal.
     Vec3d across(const Vec3d& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
@@ -29,6 +31,7 @@ struct Affine {
         out.o = -out.vector(o);
         return true;
     }
+    /// Linear, element by element: a at w = 0, b at w = 1.
     static Affine between(const Affine& a, const Affine& b, double w) {
         const double v = 1 - w;
         Affine r;

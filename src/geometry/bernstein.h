@@ -7,6 +7,7 @@ namespace alpenglow::geometry {
 
 inline constexpr int kBernsteinMost = 8; ///< largest degree below
 
+/// n over k, for 0 <= k <= n <= kBernsteinMost.
 inline double binomial(int n, int k) {
     static constexpr double kTable[kBernsteinMost + 1][kBernsteinMost + 1] = {
         {1},

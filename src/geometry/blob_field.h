@@ -20,6 +20,7 @@ namespace alpenglow::geometry {
 /// Threshold of the surface: 0.75 cubed, so that a single unit ellipsoid has radius 1/2.
 inline constexpr double kBlobThreshold = 0.421875;
 
+/// One operation of a tape.
 struct BlobOp {
     enum class Kind : uint8_t { Constant, Leaf, Add, Multiply, Maximum, Minimum, Subtract, Divide, Negate } kind = Kind::Constant;
     uint32_t a = 0, b = 0; ///< earlier operations; Leaf: a is the leaf; Constant that moves: one more than the index of its float
@@ -27,6 +28,7 @@ struct BlobOp {
 };
 using BlobTape = std::vector<BlobOp>;
 
+/// The leaves of a request and the tape that joins them. Object space.
 class BlobField {
 public:
     BlobField() = default;
@@ -40,7 +42,9 @@ public:
     const BlobTape& whole() const { return tape_; }
     const std::vector<BlobLeaf>& leaves() const { return leaves_; }
 
+    /// The field at a point; the surface is where it is kBlobThreshold.
     double value(const BlobTape&, const Vec3d&) const;
+    /// The field with its derivatives.
     BlobJet jet(const BlobTape&, const Vec3d&) const;
     /// Bounds over a box. values: of every operation.
     Interval bounds(const BlobTape&, const Vec3d& lo, const Vec3d& hi, std::vector<Interval>& values) const;
@@ -52,6 +56,7 @@ public:
         double w;
         Vec3d g;
     };
+    /// Replaces the contents of `out`; no leaf where the field is constant.
     void shares(const BlobTape&, const Vec3d&, std::vector<Share>& out) const;
 
     /// Crossings of the threshold between t0 and t1, by increasing t. Stops after `most`.

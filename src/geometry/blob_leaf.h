@@ -39,6 +39,7 @@ struct BlobGround {
     Range range(int x0, int y0, int x1, int y1) const;
 };
 
+/// One blob: where it is, and the floats that shape it.
 struct BlobLeaf {
     enum class Kind { Ellipsoid, Segment, Ground } kind = Kind::Ellipsoid;
     double m[3][4] = {}; ///< from object space to that of the unit sphere, or of the segment over its radius
@@ -50,6 +51,7 @@ struct BlobLeaf {
     double thin = 0;        ///< its smallest half axis, object space
     Vec3d lo, hi;           ///< it is 0 outside, object space
     std::shared_ptr<const BlobGround> ground;
+    /// A point of object space in the space of the leaf.
     Vec3d inside(const Vec3d& p) const;
 };
 

@@ -6,6 +6,7 @@
 
 namespace alpenglow::geometry {
 
+/// The field of a Blobby over the shutter, 0 to 1.
 class BlobMotion {
 public:
     /// plan: read with `moves`; numbers: of the request at each key, as many; times: one more than none, from 0 to 1.

@@ -15,6 +15,7 @@
 
 namespace alpenglow::geometry {
 
+/// The shape of the request.
 class Blobby final : public KeyedShape {
 public:
     Blobby(ShapeSource s, BlobField field, int leaves, Diagnostics& diag);

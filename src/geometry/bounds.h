@@ -11,6 +11,7 @@ namespace alpenglow::geometry {
 struct Bounds {
     Vec3 lo{std::numeric_limits<float>::infinity()}, hi{-std::numeric_limits<float>::infinity()};
     bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
+    /// Extends the box to a point. A coordinate that is NaN changes nothing.
     void add(const Vec3& p) {
         for (int i = 0; i < 3; ++i) {
             lo[i] = std::min(lo[i], p[i]);

@@ -9,6 +9,7 @@
 
 namespace alpenglow::geometry {
 
+/// The border edges of one cage.
 class CageBorder {
 public:
     /// Before LimitSurface::forgetTopology().

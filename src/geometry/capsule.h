@@ -27,6 +27,7 @@ struct Capsule {
         const float reach = radius + 0x1p-19f * (norm(w) + norm(along)) + 2 * slack;
         return !(dd > 1e-30f) || !(dot(nearest, nearest) > reach * reach + excess);
     }
+    /// Around a line from a to b and everything within `radius` of it, with room for rounding to float.
     static Capsule between(const Vec3d& a, const Vec3d& b, double radius) {
         Capsule c;
         c.a = Vec3(a);

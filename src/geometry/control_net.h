@@ -59,6 +59,7 @@ private:
     int order_ = 0;
 };
 
+/// The shape of Patch, PatchMesh and NuPatch (RISpec 3.2, 5.2).
 class ControlNet final : public Parametric {
 public:
     /// points: camera space, four coordinates each (weight last), u fastest. trim: the visible part, null for all.

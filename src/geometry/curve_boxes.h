@@ -16,6 +16,7 @@ public:
     bool quick() const { return !set_.linear() && affine_; }
     /// They may be a little larger, but end at `all`.
     void quickBounds(uint32_t first, std::span<Bounds> out, const Bounds& all) const;
+    /// Capsules of consecutive primitives, from `first` on.
     void capsules(uint32_t first, std::span<Capsule> out) const;
 
 private:

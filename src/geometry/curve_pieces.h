@@ -8,6 +8,7 @@
 
 namespace alpenglow::geometry {
 
+/// One segment at a time, cut into the same number of parts.
 class CurvePieces {
 public:
     /// For this number of equal parts.
@@ -16,6 +17,7 @@ public:
     void take(const Vec3d p[4], double wide, const Vec3d& reach);
     /// Holds a part, and is hardly larger than its control points.
     Bounds box(uint32_t part) const;
+    /// Holds a part and its width.
     Capsule capsule(uint32_t part) const;
 
 private:

@@ -16,9 +16,11 @@ namespace alpenglow::geometry {
 struct Jet {
     Vec3d f, d, dd;
 };
+/// A number with its first and second derivative by v.
 struct ScalarJet {
     double f = 0, d = 0, dd = 0;
 };
+/// The product, by the product rule.
 Jet cross(const Jet&, const Jet&);
 Jet operator*(const ScalarJet&, const Jet&);
 Jet operator+(const Jet&, const Jet&);
@@ -33,6 +35,7 @@ struct CurveSegment {
     double h[4]; ///< half widths: cubic in Bernstein form; linear: at the ends, [0] and [1]. Not negative
     Vec3d n[4];  ///< the same of the variable "N", where it counts
     Vec3d axis;  ///< tubes: where u is 0, turned from this axis
+    /// The largest half width on the segment.
     double widest() const;
 };
 
@@ -71,10 +74,14 @@ struct CurveRay {
     double length, shift; ///< of the direction; t of org
     double lo, hi;        ///< t
     CurveRay(const Vec3d& o, const Vec3d& d, const Vec3d& near, double lo, double hi);
+    /// A direction of object space in the axes of the ray.
     Vec3d turned(const Vec3d& v) const { return {dot(v, e1), dot(v, e2), dot(v, e3)}; }
+    /// A point of object space, relative to the origin of the axes.
     Vec3d placed(const Vec3d& p) const { return turned(p - org); }
+    /// The ray's parameter at a distance along its axis.
     double t(double z) const { return shift + z / length; }
 };
+/// A crossing of a ray and a segment.
 struct CurveHit {
     double t, s, f; ///< s: ribbons -1..1 across; tubes u
     Vec3d across;   ///< ribbons: B

@@ -59,6 +59,7 @@ private:
     std::vector<double> large_;
 };
 
+/// The pieces of one cage, by OpenSubdiv. Evaluation is thread safe.
 class LimitSurface {
 public:
     /// Face-varying values that are smoothed: per corner an index; corners of one vertex with equal indices are joined.
@@ -77,7 +78,9 @@ public:
         int corner = 0;
     };
     PieceOf pieceOf(uint32_t piece) const;
+    /// The first piece of a face.
     uint32_t firstPiece(uint32_t face) const { return firstPiece_.empty() ? face : firstPiece_[face]; }
+    /// How many pieces a face has: 1, or as many as corners.
     uint32_t piecesOf(uint32_t face) const { return firstPiece_.empty() ? 1 : firstPiece_[face + 1] - firstPiece_[face]; }
     /// Whether the face has a surface: holes, and faces at a border that is not interpolated, have none.
     bool drawn(uint32_t face) const { return vertexData_.pattern[face] != kNothing; }
@@ -93,10 +96,13 @@ public:
 
     /// Number of edges of the cage, until forgetTopology(). Sheets that share an edge use its number, as for vertices.
     uint32_t edges() const;
+    /// Corners of a face, until forgetTopology().
     int corners(uint32_t face) const;
+    /// The vertex at a corner.
     int vertexAt(uint32_t face, int corner) const;
     int edgeAt(uint32_t face, int corner) const; ///< runs on to the next corner
     int edgeStart(int edge) const;               ///< first vertex of an edge
+    /// Frees what only building needs.
     void forgetTopology();
 
     /// Number of faces with more adjacent edges than can be evaluated, which are flat. For a message.

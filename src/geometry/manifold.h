@@ -6,6 +6,7 @@
 
 namespace alpenglow::geometry {
 
+/// The separated cage.
 struct ManifoldCage {
     SubdivisionCage cage;      ///< refers to `vertex`, and to the corner counts of the original cage
     std::vector<int> vertex;   ///< per corner
@@ -13,6 +14,7 @@ struct ManifoldCage {
     std::vector<int> original; ///< per vertex of `cage`: vertex of the original
 };
 
+/// The original must outlive the result, which refers to it.
 ManifoldCage makeManifold(const SubdivisionCage&);
 
 } // namespace alpenglow::geometry

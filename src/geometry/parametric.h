@@ -12,6 +12,7 @@ struct LocalPoint {
 
 class EdgeCurve;
 
+/// A surface over u and v from 0 to 1.
 class Parametric : public Shape {
 public:
     using Shape::Shape;

@@ -8,6 +8,7 @@
 
 namespace alpenglow::geometry {
 
+/// The planes of that region. Camera space.
 class PictureSides {
 public:
     /// From the frame's options, with margins for the widest filter and the lens. None: the camera moves, there are two eyes, or
@@ -42,7 +43,9 @@ private:
 /// A box around a piece of a smooth surface from points on it, each with the vector to the start of the next one's part.
 class ProbedBox {
 public:
+    /// Adds a point and the change of the surface over one step of the probing grid in u and in v.
     void add(const Vec3d& p, const Vec3d& alongU, const Vec3d& alongV);
+    /// Around all points, with room for what lies between them.
     Bounds box() const;
 
 private:

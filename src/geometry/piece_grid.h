@@ -6,6 +6,7 @@
 
 namespace alpenglow::geometry {
 
+/// The facets of one piece, in its own u and v.
 struct PieceGrid {
     std::vector<Vec2>
         param; ///< the border first, from corner 0 by winding: corner, points of the edge, corner ..; then the inside

@@ -87,6 +87,7 @@ public:
     std::vector<std::pair<float, Affine>> placeKeys() const;
     /// Transformation from camera space at a time. Returns false if it is singular; the shape is then invisible.
     bool toGeometry(float time, Affine& out) const;
+    /// Transformation to camera space at a time.
     Affine fromGeometry(float time) const;
     /// 1 or -1: the side of a normal of the geometry that is the placed one's.
     double side() const { return side_; }

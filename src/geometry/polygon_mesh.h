@@ -21,6 +21,7 @@ struct PolygonInput {
 /// Checks the input against "P", reports errors, drops invalid faces; returns null if none are left.
 ShapeRef makePolygonMesh(ShapeSource, PolygonInput, Diagnostics&);
 
+/// The shape of the four requests.
 class PolygonMesh final : public Shape {
 public:
     /// Moves the lists of the input, to free their memory early.

@@ -19,6 +19,7 @@ struct Implicit {
     double zz = 0, z1 = 0, c = 0;
 };
 
+/// What the seven shapes share: intersection of the swept profile and its derivatives.
 class Quadric : public Parametric {
 public:
     Quadric(ShapeSource, double thetaMaxDegrees, Diagnostics&);

@@ -6,6 +6,7 @@
 
 namespace alpenglow::geometry {
 
+/// A cage that owns its lists.
 struct RefinedCage {
     SubdivisionCage cage; ///< its lists look at those below
     std::vector<int> corners, vertex;
@@ -14,6 +15,7 @@ struct RefinedCage {
     std::vector<uint8_t> smooth;             ///< per value: face-varying, smoothed
     std::vector<std::vector<int>> children;  ///< per face of the level before: the faces it became
 
+    /// Points the cage to the lists; after every change of these.
     void look() { cage.corners = corners, cage.vertex = vertex; }
     /// Refines by one level. Returns false if OpenSubdiv rejects its topology.
     bool refine();

@@ -7,12 +7,15 @@
 
 namespace alpenglow::geometry {
 
+/// The borders of all shapes of a world while they are displaced.
 class Seams {
 public:
     /// flat: undisplaced vertices. The mesh must live until close() or drop(). order: of all borders, so that threads change
     /// nothing. Thread safe.
     void add(TriMesh&, std::vector<uint32_t> vertex, std::vector<Vec3> flat, uint32_t order, const std::vector<double>& with);
+    /// Forgets the borders of a mesh.
     void drop(const TriMesh&);
+    /// Moves the points that coincided, after the last add().
     void close();
 
 private:

@@ -69,6 +69,7 @@ struct TriMesh {
     std::vector<uint32_t> made;
     uint32_t vertices = 0;
     uint32_t triangles() const { return uint32_t(index.size() / 3); }
+    /// Ends construction: adds the unused point, and points `index` to `made`.
     void finish() {
         vertices = uint32_t(P.size());
         P.push_back(Vec3(0.f));
@@ -107,6 +108,7 @@ struct ShapeSource {
 /// of a primitive stays outside; "lh" is +1 (camera space is left-handed) and "rh" is -1, for any transform.
 float orientationSign(const scene::Attributes&, const Matrix& toCamera);
 
+/// A primitive, or one instance of it. Immutable once it is diced, so all const functions are thread safe.
 class Shape {
 public:
     explicit Shape(ShapeSource);
@@ -137,6 +139,7 @@ public:
     int exactHits(const Vec3d& org, const Vec3d& dir, ExactHit out[4]) const {
         return exactHits(0, org, dir, -INFINITY, INFINITY, Wanted::All, out);
     }
+    /// How many crossings are needed.
     enum class Wanted { All, Nearest, Any };
     /// Those of one primitive with lo < t <= hi only, which is cheaper. Nearest: one is enough; Any: whether there is one, u and
     /// v may stay unset.
@@ -146,6 +149,7 @@ public:
     }
     /// Some triangles are partly cut away: keepsHit() tests points. Thread safe.
     bool trimmed() const { return trimmed_; }
+    /// Whether the surface is there; only where trimmed().
     virtual bool keepsHit(uint32_t /*prim*/, double /*b1*/, double /*b2*/) const { return true; }
     /// Encloses everything a ray can hit.
     virtual Bounds bounds() const;

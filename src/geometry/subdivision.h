@@ -12,6 +12,7 @@ struct FaceDomain {
     Vec2 origin{0, 0}, along{1, 0}, across{0, 1};
 };
 
+/// The shape of the two requests.
 class Subdivision final : public Shape {
 public:
     /// domains: per face of the cage; empty where the cage is the request's own.

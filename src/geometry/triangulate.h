@@ -8,6 +8,7 @@
 
 namespace alpenglow::geometry {
 
+/// How far triangulate() came.
 enum class TriangulationResult { Good, Forced, Nothing };
 
 /// Cuts a polygon into triangles by ear clipping; holes are joined to the outer loop by bridges first.

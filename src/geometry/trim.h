@@ -27,6 +27,7 @@ public:
 
     /// Whether the point is kept. Points on the curve belong to one side.
     bool keeps(double u, double v) const;
+    /// How much of a rectangle is kept.
     enum class Cover { None, Some, All };
     /// Coverage of a rectangle; conservative: Some may stand for None or All, never the reverse.
     Cover cover(double u0, double v0, double u1, double v1) const;

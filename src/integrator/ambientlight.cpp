@@ -17,7 +17,8 @@
 namespace alpenglow::integrator {
 
 static bool anyAmbient(const WorldImpl& w) {
-    return std::any_of(w.skies_.begin(), w.skies_.end(), [&](int l) { return w.lights_[size_t(l)].kind == LightKind::Ambient; });
+    return std::any_of(w.skies().begin(), w.skies().end(),
+                       [&](int l) { return w.lights()[size_t(l)].kind == LightKind::Ambient; });
 }
 
 AmbientLight::AmbientLight(const StageSet& s)
@@ -80,15 +81,15 @@ void AmbientLight::gather(BatchContext& c) {
     std::vector<size_t> of;
     std::vector<LightValue> value;
     draw(c, calls);
-    for (const int number : world_.skies_) {
-        const BoundLight& l = world_.lights_[size_t(number)];
+    for (const int number : world_.skies()) {
+        const BoundLight& l = world_.lights()[size_t(number)];
         if (l.kind != LightKind::Ambient) continue;
         queries.clear();
         of.clear();
         litBy_.clear();
         for (size_t i = 0; i < calls.size(); ++i) {
             const size_t point = size_t(calls[i].point);
-            if (!world_.bindings_[size_t(c.bindings[point])].lights.contains(number)) continue;
+            if (!world_.bindings()[size_t(c.bindings[point])].lights.contains(number)) continue;
             ShadePoint& q = queries.emplace_back(c.points[point]);
             q.Ps = q.P;
             q.Ns = q.N;

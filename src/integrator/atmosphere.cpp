@@ -59,15 +59,15 @@ void Atmosphere::atmosphereEffects(const Medium& medium, const SurfaceBinding& b
 
 /// Adds outputs of the volume that displays request and that the surface lacks, or may not write.
 void Atmosphere::keepOutputs(const shading::Batch& volume, BatchContext& surface, std::span<const int> of) {
-    const auto& wanted = world_.wanted_;
+    const auto& wanted = world_.wanted();
     size_t all = 0, at = 0;
-    for (int w : world_.outputWidths_) all += size_t(w);
-    for (size_t k = 0; k < wanted.size(); at += size_t(world_.outputWidths_[k++])) {
+    for (int w : world_.widthsOfOutputs()) all += size_t(w);
+    for (size_t k = 0; k < wanted.size(); at += size_t(world_.widthsOfOutputs()[k++])) {
         if (!outputsNamed(*surface.batch, wanted[k]).empty() &&
             !(surface.binding && givesPerhaps(*surface.binding->surface, wanted[k])))
             continue;
         size_t to = at;
-        const size_t end = at + size_t(world_.outputWidths_[k]);
+        const size_t end = at + size_t(world_.widthsOfOutputs()[k]);
         for (int o : outputsNamed(volume, wanted[k])) {
             if (surface.lightChannels.empty()) surface.lightChannels.assign(surface.points.size() * all, 0);
             for (int r = 0; r < rsl::ir::components(volume.kernel().outputs()[size_t(o)].kind) && to < end; ++r, ++to)
@@ -87,8 +87,8 @@ void Atmosphere::atmosphereOfBatch(BatchContext& c, int first, int count, bool w
     std::vector<AtmosphereEffect> out;
     std::vector<char> done(size_t(std::max(0, end - first)));
     for (int i = first; i < end; ++i) {
-        const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[size_t(i)])];
-        const Medium* medium = mediumOf(i) >= 0 ? &world_.media_[size_t(mediumOf(i))] : &b.atmosphere;
+        const SurfaceBinding& b = world_.bindings()[size_t(c.bindings[size_t(i)])];
+        const Medium* medium = mediumOf(i) >= 0 ? &world_.media()[size_t(mediumOf(i))] : &b.atmosphere;
         if (!medium->shader || medium->homogeneous || done[size_t(i - first)]) continue; // a flight has handled homogeneous media
         points.clear();
         of.clear();
@@ -131,9 +131,9 @@ void Atmosphere::atmosphereOfPhotons(BatchContext& c) {
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& r = c.rays[i];
         const int in = r.medium();
-        const int binding = in >= 0 ? world.media_[size_t(in)].binding : r.lobeBinding;
+        const int binding = in >= 0 ? world.media()[size_t(in)].binding : r.lobeBinding;
         if (binding < 0) continue;
-        const Medium& m = in >= 0 ? world.media_[size_t(in)] : world.bindings_[size_t(binding)].atmosphere;
+        const Medium& m = in >= 0 ? world.media()[size_t(in)] : world.bindings()[size_t(binding)].atmosphere;
         if (!m.shader || m.homogeneous) continue; // segment events handle homogeneous media
         ways.push_back({&m, binding, i, in >= 0 ? r.origin : r.lobeOrigin});
     }
@@ -159,7 +159,7 @@ void Atmosphere::atmosphereOfPhotons(BatchContext& c) {
             p.time = here.time;
         }
         out.assign(points.size(), {});
-        atmosphereEffects(*ways[first].medium, world.bindings_[size_t(ways[first].binding)], points, out, true);
+        atmosphereEffects(*ways[first].medium, world.bindings()[size_t(ways[first].binding)], points, out, true);
         for (size_t k = first; k < end; ++k) {
             Color left = out[k - first].slope;
             for (int i = 0; i < 3; ++i) left[i] = std::isfinite(left[i]) ? std::max(left[i], 0.f) : 0;
@@ -173,16 +173,16 @@ void Atmosphere::atmosphereOfEmitters(const BoundLight& light, std::span<const S
     if (!light.hazy) return;
     std::vector<ShadePoint> one(1);
     for (size_t i = 0; i < queries.size(); ++i) {
-        auto found = world_.emittersInAtmosphere_.find(queries[i].shape);
+        auto found = world_.emittersInAtmosphere().find(queries[i].shape);
         if (inMedium && (*inMedium)[i]) continue;
-        if (found == world_.emittersInAtmosphere_.end() || values[i].Cl == Color(0)) continue;
+        if (found == world_.emittersInAtmosphere().end() || values[i].Cl == Color(0)) continue;
         one[0] = queries[i];
         one[0].I = queries[i].P - queries[i].Ps;
         one[0].E = queries[i].Ps;
         one[0].Ci = values[i].Cl;
         one[0].Oi = Color(1);
         AtmosphereEffect h;
-        const SurfaceBinding& b = world_.bindings_[size_t(found->second)];
+        const SurfaceBinding& b = world_.bindings()[size_t(found->second)];
         atmosphereEffects(b.atmosphere, b, one, {&h, 1}, true);
         values[i].Cl *= h.slope;
     }

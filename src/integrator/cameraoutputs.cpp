@@ -25,35 +25,35 @@ static Vec3 normalSeen(const ShadePoint& p, const Vec3& dir) {
 }
 
 void CameraOutputs::seeNormal(const PathRay& ray, const ShadePoint& p, const Color& opacity) {
-    if (!world_.settings_.firstSeen) return;
+    if (!world_.settings().firstSeen) return;
     accumulator_.results[size_t(ray.sample->path)]->normal += normalSeen(p, ray.dir) * luminance(ray.weight * opacity);
 }
 
 void CameraOutputs::begin(const BatchContext& c) {
     wantedAt_.clear();
     perhaps_.clear();
-    for (const rsl::OutputName& name : world_.wanted_) wantedAt_.push_back(outputsNamed(*c.batch, name));
+    for (const rsl::OutputName& name : world_.wanted()) wantedAt_.push_back(outputsNamed(*c.batch, name));
 }
 
 /// Whether lights or the atmosphere write an output, rather than the surface.
 bool CameraOutputs::givenByOthers(const BatchContext& c, size_t output, int point) {
     if (wantedAt_[output].empty() || c.lightChannels.empty()) return wantedAt_[output].empty();
     if (perhaps_.empty())
-        for (const rsl::OutputName& name : world_.wanted_)
+        for (const rsl::OutputName& name : world_.wanted())
             perhaps_.push_back(c.binding && givesPerhaps(*c.binding->surface, name));
-    return perhaps_[output] && !givenAt(*c.batch, world_.wanted_[output], point);
+    return perhaps_[output] && !givenAt(*c.batch, world_.wanted()[output], point);
 }
 
 void CameraOutputs::add(const BatchContext& c, int point) {
     const size_t i = size_t(point);
     const PathRay& ray = c.rays[i];
-    const SurfaceBinding& binding = world_.bindings_[size_t(c.bindings[i])];
+    const SurfaceBinding& binding = world_.bindings()[size_t(c.bindings[i])];
     const shading::Batch& b = *c.batch;
     SampleResult& r = *accumulator_.results[size_t(ray.sample->path)];
     size_t at = 0;
-    for (size_t k = 0; k < wantedAt_.size(); at += size_t(world_.outputWidths_[k++])) {
+    for (size_t k = 0; k < wantedAt_.size(); at += size_t(world_.widthsOfOutputs()[k++])) {
         if (!binding.aside.empty() && binding.aside[k]) continue; // LightOutputs::lightOutputBatches() adds it
-        const int width = world_.outputWidths_[k];
+        const int width = world_.widthsOfOutputs()[k];
         if (!givenByOthers(c, k, point)) {
             int to = 0;
             for (const int o : wantedAt_[k]) {

@@ -19,9 +19,9 @@ namespace alpenglow::integrator {
 
 LightSampling::ChosenLights::ChosenLights(LightSampling& of, const StageSet& s, const VertexStages& v)
     : VertexStage(s, v), lightSampling_(of), chosenHere_(size_t(kBlock) * LightTree::kMostChosen) {
-    for (const WorldImpl::LightGroup& g : world_.lightGroups_)
+    for (const WorldImpl::LightGroup& g : world_.lightGroups())
         for (int k = 0; k < 4; ++k) all_.push_back({&g.kernel, (k & 1) != 0, {}});
-    for (const BoundLight& l : world_.lights_) {
+    for (const BoundLight& l : world_.lights()) {
         wide_.push_back(isWide(l));
         together_.push_back(togetherOf(l));
         origins_.push_back(l.instance ? originOfLight(*l.instance, 0) : Vec3()); // none: the shader was rejected
@@ -31,7 +31,7 @@ LightSampling::ChosenLights::ChosenLights(LightSampling& of, const StageSet& s, 
 /// Index of the lights that share a kernel, all of them with a density or without, and sampled in rows or not.
 int LightSampling::ChosenLights::togetherOf(const BoundLight& l) const {
     if (l.group < 0) return -1;
-    const bool rows = !isWide(l) && lightSampling_.inRows(l, world_.lightGroups_[size_t(l.group)].kernel);
+    const bool rows = !isWide(l) && lightSampling_.inRows(l, world_.lightGroups()[size_t(l.group)].kernel);
     return 4 * l.group + 2 * int(l.hasDensity()) + int(rows);
 }
 
@@ -42,7 +42,7 @@ void LightSampling::ChosenLights::light(const WorldImpl::LightList& list, BatchC
     for (size_t k = 0; k < on.size(); ++k) {
         const int number = on[k];
         if (begin_[k] == begin_[k + 1] || (list.ofAll && !list.lights.contains(number))) continue;
-        if (!world_.lights_[size_t(number)].importance) continue; // only rays find it
+        if (!world_.lights()[size_t(number)].importance) continue; // only rays find it
         const auto asked = std::span(sorted_).subspan(begin_[k], begin_[k + 1] - begin_[k]);
         if (together_[size_t(number)] < 0) {
             ask(nullptr, false, asked, c, sched);
@@ -65,14 +65,14 @@ void LightSampling::ChosenLights::light(const WorldImpl::LightList& list, BatchC
 void LightSampling::ChosenLights::ask(const BoundKernel* group, bool rows, std::span<const Asked> asked, BatchContext& c,
                                       Sched& sched) {
     for (v_.draw = 0; !asked.empty(); ++v_.draw) {
-        v_.checksHits = lightSampling_.checksHits(world_.lights_[size_t(asked[0].light)]);
+        v_.checksHits = lightSampling_.checksHits(world_.lights()[size_t(asked[0].light)]);
         if (rows && !v_.checksHits) askInRows(*group, asked, c);
         else askByPoints(group, asked, c);
         if (lightSampling_.shadows_.queue.size() > kShadowsAtOnce) lightSampling_.shadows_.flush(sched);
         if (!v_.several) break;
         std::vector<Asked> again;
         for (const Asked& a : asked)
-            if (v_.draw + 1 < uint32_t(lightSampling_.drawsOf(world_.lights_[size_t(a.light)], size_t(a.point))))
+            if (v_.draw + 1 < uint32_t(lightSampling_.drawsOf(world_.lights()[size_t(a.light)], size_t(a.point))))
                 again.push_back(a);
         again_.swap(again);
         asked = again_;
@@ -140,7 +140,7 @@ void LightSampling::ChosenLights::askOnce(const BoundKernel* group, BatchContext
     placeQueries(c);
     if (of_.empty()) return;
     std::vector<const BoundLight*> lights;
-    for (const auto& [k, lane] : of_) lights.push_back(&world_.lights_[size_t(blocks_[k].asked[lane]->light)]);
+    for (const auto& [k, lane] : of_) lights.push_back(&world_.lights()[size_t(blocks_[k].asked[lane]->light)]);
     lightSampling_.askQueries(*lights[0], group, lights, c);
     for (size_t n = 0; n < of_.size(); ++n) {
         const auto& [k, lane] = of_[n];
@@ -167,14 +167,14 @@ void LightSampling::ChosenLights::placeQueries(const BatchContext& c) {
     of_.clear();
     for (size_t k = 0; k < count_; ++k) {
         Questions& q = blocks_[k];
-        const BoundLight& first = world_.lights_[size_t(q.asked[0]->light)];
+        const BoundLight& first = world_.lights()[size_t(q.asked[0]->light)];
         q.lights.emitter = first.kind == LightKind::Area;
         q.lights.met = first.hasDensity();
         q.lights.asked = q.lights.metDiffuse = q.lights.metSpecular = 0;
         for (Lanes left = q.there; left; left &= left - 1) {
             const int lane = std::countr_zero(left);
             const size_t point = size_t(q.asked[lane]->point);
-            const BoundLight& light = world_.lights_[size_t(q.asked[lane]->light)];
+            const BoundLight& light = world_.lights()[size_t(q.asked[lane]->light)];
             if (only &&
                 !(lightSampling_.lightsAt(*only, light, point) && v_.draw < uint32_t(lightSampling_.drawsOf(*only, point))))
                 continue;
@@ -224,7 +224,7 @@ void LightSampling::ChosenLights::gatherPoints(std::span<const Asked> asked) {
             numbers.low[i] = v.low[at];
             numbers.high[i] = v.high[at];
             numbers.index[i] = v.index[at];
-            const BoundLight& light = world_.lights_[size_t(a.light)];
+            const BoundLight& light = world_.lights()[size_t(a.light)];
             if (v_.several)
                 lightSampling_.nameDraw(v_.rays[size_t(a.point / kBlock)], int(at),
                                         uint32_t(lightSampling_.drawsOf(light, size_t(a.point))), numbers, int(i));
@@ -240,7 +240,7 @@ void LightSampling::ChosenLights::gatherPoints(std::span<const Asked> asked) {
 void LightSampling::ChosenLights::placeLights() {
     const size_t n = count_ * kBlock;
     lamp_.resize(9 * n);
-    const bool emitters = world_.lights_[size_t(blocks_[0].asked[0]->light)].kind == LightKind::Area;
+    const bool emitters = world_.lights()[size_t(blocks_[0].asked[0]->light)].kind == LightKind::Area;
     if (emitters) drawNumbers();
     for (size_t k = 0; k < count_; ++k) {
         Questions& q = blocks_[k];
@@ -263,7 +263,7 @@ void LightSampling::ChosenLights::placeLights() {
 void LightSampling::ChosenLights::drawNumbers() {
     bool choices = false;
     for (size_t k = 0; k < count_; ++k)
-        for (const Asked* a : blocks_[k].asked) choices |= takesChoice(world_.lights_[size_t(a->light)]);
+        for (const Asked* a : blocks_[k].asked) choices |= takesChoice(world_.lights()[size_t(a->light)]);
     if (choices) {
         choices_ = pairs_;
         for (NumberBlock& n : choices_)
@@ -279,7 +279,7 @@ void LightSampling::ChosenLights::placeOnEmitters(size_t k) {
     Questions& q = blocks_[k];
     alignas(64) double share[kBlock];
     for (size_t i = 0; i < size_t(kBlock); ++i) {
-        const Emitter& e = *world_.lights_[size_t(q.asked[i]->light)].emitter;
+        const Emitter& e = *world_.lights()[size_t(q.asked[i]->light)].emitter;
         const float choose = e.flat().size() > 1 ? choices_[k].x[i] : 0;
         const size_t shape = e.flatFrom({q.points.P[0][i], q.points.P[1][i], q.points.P[2][i]}, choose, share[i]);
         q.lamp[i] = &e.flat()[shape];
@@ -302,7 +302,7 @@ const shading::Batch& LightSampling::ChosenLights::run(const BoundKernel& kernel
             continue;
         }
         if (i == 0 || asked[i].light != asked[i - 1].light) {
-            const BoundLight& l = world_.lights_[size_t(asked[i].light)];
+            const BoundLight& l = world_.lights()[size_t(asked[i].light)];
             views_.push_back(l.instance->view());
             views_.back().rows = l.rows.get();
         }
@@ -310,7 +310,7 @@ const shading::Batch& LightSampling::ChosenLights::run(const BoundKernel& kernel
     }
     call.bound = &kernel;
     call.lit = nullptr;
-    call.light = &world_.lights_[size_t(asked[0].light)];
+    call.light = &world_.lights()[size_t(asked[0].light)];
     call.ownShadows.clear();
     if (!call.batch) call.batch = std::make_shared<shading::Batch>();
     const std::span<const float> rows(lamp_);
@@ -326,7 +326,7 @@ const shading::Batch& LightSampling::ChosenLights::run(const BoundKernel& kernel
 void LightSampling::ChosenLights::takeLight(size_t k, const shading::Batch& from, const BatchContext& c) {
     Questions& q = blocks_[k];
     LightBlock& l = q.lights;
-    const BoundLight& first = world_.lights_[size_t(q.asked[0]->light)]; // outputs have the same indices in all of them
+    const BoundLight& first = world_.lights()[size_t(q.asked[0]->light)]; // outputs have the same indices in all of them
     const size_t at = k * kBlock;
     const auto row = [&](int output, int component) { return from.row(output, component).data() + at; };
     const auto kept = [&](int output, Row& to) {
@@ -338,7 +338,7 @@ void LightSampling::ChosenLights::takeLight(size_t k, const shading::Batch& from
     if (!l.emitter) lightSampling_.placeFar(first, from, at, l);
     for (Lanes left = q.there; left; left &= left - 1) {
         const int i = std::countr_zero(left);
-        const BoundLight& light = world_.lights_[size_t(q.asked[i]->light)];
+        const BoundLight& light = world_.lights()[size_t(q.asked[i]->light)];
         const Vec3 L = light.outL < 0 ? Vec3() : Vec3(row(light.outL, 0)[i], row(light.outL, 1)[i], row(light.outL, 2)[i]);
         Color Cl{l.Cl[0][i], l.Cl[1][i], l.Cl[2][i]};
         if (light.intensityScale > 0) { // the kernel divided by the squared distance; radiance does not
@@ -361,7 +361,7 @@ void LightSampling::ChosenLights::takeLight(size_t k, const shading::Batch& from
 
 /// Reads the shadow parameters of a light. at: index in the batch.
 void LightSampling::ChosenLights::takeShadow(Questions& q, int i, const Vec3& L, const shading::Batch& from, size_t at) {
-    const BoundLight& light = world_.lights_[size_t(q.asked[i]->light)];
+    const BoundLight& light = world_.lights()[size_t(q.asked[i]->light)];
     LightValue v;
     if (!lightSampling_.asksShadowDisk(light, from, at, v)) return;
     v.L = L;

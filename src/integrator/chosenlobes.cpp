@@ -19,7 +19,7 @@ Lanes LightSampling::ChosenLights::gatherLobes(const Questions& q, const Site& s
         from[i] = l.lobe[0] + at;
         for (int r = 0; r < 3; ++r) lobe_.weight[r][i] = l.weight[r][at];
         lobe_.chosen[i] = l.chosen[at];
-        const BoundLight& light = world_.lights_[size_t(a.light)];
+        const BoundLight& light = world_.lights()[size_t(a.light)];
         const bool samples = ((l.lights & ~lightSampling_.gathered_.bring(l, light)) >> at & 1) &&
                              lightSampling_.samples(s, light) &&
                              (v_.draw == 0 || v_.draw < uint32_t(lightSampling_.drawsOf(s, size_t(a.point))));
@@ -50,13 +50,13 @@ void LightSampling::ChosenLights::connect(Questions& q, BatchContext& c) {
     const BoundLight* lights[kBlock];
     for (int i = 0; i < kBlock; ++i) {
         if (q.there >> i & 1) points[i] = size_t(q.asked[i]->point);
-        lights[i] = &world_.lights_[size_t(q.asked[i]->light)];
+        lights[i] = &world_.lights()[size_t(q.asked[i]->light)];
     }
     q.lights.parted = c.between;
     for (Lanes left = c.between ? q.there & q.lights.asked : 0; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         q.lights.part[i] =
-            lightSampling_.mediumEvents_.shareOfDistance(c.flown[points[i]], world_.lights_[size_t(q.asked[i]->light)]);
+            lightSampling_.mediumEvents_.shareOfDistance(c.flown[points[i]], world_.lights()[size_t(q.asked[i]->light)]);
     }
     const Lanes placed = q.lights.asked;
     for (size_t k = 0; k < v_.count; ++k) {

@@ -44,7 +44,7 @@ void Connection::connect(const BoundLight& light, BatchContext& c) {
 
 void Connection::weighAlone(const VertexBlock& points, const LobeBlock& lobe, const LightBlock& l, const float* kept, bool ahead,
                             Lanes met) {
-    aloneLanes_ = world_.shadowVisibility_.differs() && l.met ? met & l.asked : 0;
+    aloneLanes_ = world_.shadowVisibility().differs() && l.met ? met & l.asked : 0;
     if (!aloneLanes_) return;
     alone_ = v_.shadow;
     Lanes failed = 0;
@@ -67,7 +67,7 @@ Lanes Connection::contribute(const Site& s, const VertexBlock& points, const Lob
     l.draws = v_.several ? draws_ : nullptr; // the lobe's weight counts once for all of them
     s.addLightDirected(lobe.lights & l.asked, l.w, pointOf, v_.value[kRowPdf]);
     const float* kept = !s.lighting && l.met ? v_.whole : s.diffuse ? l.keptDiffuse : l.keptSpecular;
-    const Lanes met = world_.settings_.lightOnly ? 0 : s.diffuse ? l.metDiffuse : l.metSpecular;
+    const Lanes met = world_.settings().lightOnly ? 0 : s.diffuse ? l.metDiffuse : l.metSpecular;
     Lanes some = stages_.contribute(points, lobe, l, kept, met, !s.lighting, v_.value[0], v_.shadow, &failed);
     weighAlone(points, lobe, l, kept, !s.lighting, met);
     for (; failed; failed &= failed - 1) accumulator_.notFinite(c, c.rays[pointOf[std::countr_zero(failed)]], uint32_t(s.number));
@@ -122,7 +122,7 @@ void Connection::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
                                 light,
                                 light / pdf,
                                 pdf},
-                               int(&of - world_.lights_.data())});
+                               int(&of - world_.lights().data())});
             }
         }
     }
@@ -135,14 +135,14 @@ void Connection::sendShadow(const Site& site, size_t point, size_t lane, const V
     v_.sent[lane] = int32_t(shadows_.queue.size());
     ShadowRay& s = shadows_.queue.emplace_back();
     s = {row3(v_.shadow.origin), row3(v_.shadow.direction), v_.shadow.length[lane],
-         row3(v_.shadow.light),  c.targets[point],          world_.shadesAtOpen_ ? 0 : c.rays[point].shutter(),
+         row3(v_.shadow.light),  c.targets[point],          world_.shadesAtOpen() ? 0 : c.rays[point].shutter(),
          &c.rays[point]};
     noteAlone(site, lane, -1);
     s.share = v_.shareOf(site, point, c.rays[point]);
     const bool emitter = of.kind == LightKind::Area;
     if (site.sets) s.kind = store_.kindOf({RayType::Transmission, false, site.raysAt(point).set, 0});
     s.areaLight = emitter && !site.lighting && site.info->trace->sums;
-    if (!world_.media_.empty()) s.media = media_.towards(c, int(point), w);
+    if (!world_.media().empty()) s.media = media_.towards(c, int(point), w);
     s.path = v_.pathOf(site, false, point, w, c);
     if (s.path) s.light = paths_.lights[v_.numberOf(of)];
     // Under the other hiders, light loops and trace() with "samplelights" let lights without "shadows" through.
@@ -190,7 +190,7 @@ void Connection::dropUnhit(const Site& s, const size_t* points, const BoundLight
         const shading::RaySet& set = s.raysAt(points[i]).set;
         const geometry::Shape& shape = *v_.asked[query].sample.shape;
         const Vec3 w(l.w[0][i], l.w[1][i], l.w[2][i]);
-        bool hit = s.lighting || !set.only || set.only[world_.numberOfShape_.at(&shape)];
+        bool hit = s.lighting || !set.only || set.only[world_.numberOfShape().at(&shape)];
         // Sides 1: rays pass through the emitter from its back, so it sends nothing there.
         if (shape.oneSided() && set.sides != accel::Sides::Both && !(s.lighting && of[i]->mean))
             hit &= (dot(intersectsNormal(v_.queries[query].surface), w) >= 0) == (set.sides == accel::Sides::Back);

@@ -4,8 +4,8 @@
 namespace alpenglow::integrator {
 
 Context::Context(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
-    : frame(std::move(w)), world(*frame), diagnostics(d), seed(world.settings_.seed),
-      totalReflection(rsl::internString("totalreflection")), rules(world.settings_) {}
+    : frame(std::move(w)), world(*frame), diagnostics(d), seed(world.settings().seed),
+      totalReflection(rsl::internString("totalreflection")), rules(world.settings()) {}
 
 void Counters::operator+=(const Counters& o) {
     reflected += o.reflected;

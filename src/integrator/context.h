@@ -21,7 +21,7 @@ struct Rules {
 struct SeenSample {
     static constexpr int32_t kBlocked = -1;
     SeenLight seen;
-    int32_t light; ///< index in WorldImpl::lights_; kBlocked: a surface
+    int32_t light; ///< index in WorldImpl::lights(); kBlocked: a surface
 };
 
 /// One for each thread.

@@ -42,7 +42,7 @@ struct AtmosphereSegment {
 void enterMedia(const WorldImpl& world, const shading::Media* m, const Vec3& begin, const accel::Hit& h, size_t sample,
                 size_t going, std::vector<AtmosphereSegment>& ways) {
     if (!m || m->top() < 0) return;
-    const geometry::SurfacePoint at = world.accel_->point(h);
+    const geometry::SurfacePoint at = world.accel().point(h);
     ways.push_back({m->top(), sample, going, begin, at.displaced ? at.displacedP : at.P});
 }
 
@@ -143,7 +143,7 @@ void DepthRays::Looking::intersect() {
     hits_.assign(now_.size(), {});
     ways_.clear();
     for (size_t i = 0; i < now_.size(); ++i)
-        if (stage_.intersector_.intersect(now_[i].ray, hits_[i]) && !world_.media_.empty())
+        if (stage_.intersector_.intersect(now_[i].ray, hits_[i]) && !world_.media().empty())
             enterMedia(world_, now_[i].media, now_[i].begin, hits_[i], now_[i].index, i, ways_);
     if (ways_.empty()) return;
     inAtmosphere_.clear();
@@ -153,19 +153,19 @@ void DepthRays::Looking::intersect() {
 }
 
 void DepthRays::Looking::pass(Going& g, const accel::Hit& h) {
-    const int binding = world_.bindingOf_[h.shape];
-    const SurfaceBinding& b = world_.bindings_[size_t(binding)];
+    const int binding = world_.bindingOf()[h.shape];
+    const SurfaceBinding& b = world_.bindings()[size_t(binding)];
     world_.goOn(g.ray, h);
-    const geometry::SurfacePoint at = world_.accel_->point(h);
+    const geometry::SurfacePoint at = world_.accel().point(h);
     const Vec3& P = at.displaced ? at.displacedP : at.P;
-    if (!world_.media_.empty()) {
+    if (!world_.media().empty()) {
         const bool overruled = b.overruled(g.media);
         g.media = stage_.media_.beyond(b, g.media, at.n, g.ray.dir, g.ray.dir);
         g.begin = P;
         if (overruled) return next_.push_back(g);
     }
     const Opacity& opacity = b.opacityFor(shading::HitMode::Default);
-    const scene::Attributes* own = &world_.shapes_[h.shape]->attributes(); // bindings are shared by shapes of other names
+    const scene::Attributes* own = &world_.shapes()[h.shape]->attributes(); // bindings are shared by shapes of other names
     if (opacity.kernel) {
         met_.push_back({binding, h, &asked_[g.index], &opacity.kernel});
         waiting_.push_back({next_.size(), P.z, own});
@@ -198,7 +198,7 @@ bool DepthRays::Looking::run() {
 bool DepthRays::seeThrough(std::span<const CameraRay> rays, std::span<SampleResult> out,
                            const std::function<void(const CameraRay&, size_t, PathRay&)>& begin) {
     counters_.camera += rays.size();
-    if (!world_.accel_) return true;
+    if (!world_.canTrace()) return true;
     std::vector<PathRay> paths(rays.size());
     Looking looking(*this, out);
     for (size_t i = 0; i < rays.size(); ++i) {

@@ -57,7 +57,7 @@ void Walks::probe(int asked) {
     for (int layer = 0; layer < limits::kShadowLayers && intersector_.intersect(probe, hit); ++layer) {
         world.goOn(probe, hit);
         if (!belongs(hit.shape, b.group)) continue;
-        const geometry::SurfacePoint s = world.accel_->point(hit);
+        const geometry::SurfacePoint s = world.accel().point(hit);
         const Vec3 n = s.displaced ? s.displacedN : s.n, to = (s.displaced ? s.displacedP : s.P) - from;
         double density = 0; // of all axes and channels that could have sampled this point
         for (int j = 0; j < 3; ++j) {

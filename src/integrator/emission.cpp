@@ -26,15 +26,15 @@ bool mayEmit(const BoundLight& l, bool sky) {
 } // namespace
 
 EmissionPlan::EmissionPlan(LightKernels& lights, const PhotonUse& use) : world_(lights.world()) {
-    if (!world_.accel_) return;
+    if (!world_.canTrace()) return;
     const geometry::Bounds box = world_.bounds();
     centre = (box.lo + box.hi) * 0.5f;
     radius = length(box.hi - box.lo) * 0.5f * 1.0001f;
     if (!std::isfinite(radius) || !(radius > 0)) return;
     const auto says = [](const BoundLight& l) { return emitsPhotons(l).value_or(false); };
-    const bool some = std::any_of(world_.lights_.begin(), world_.lights_.end(), says);
-    for (size_t i = 0; i < world_.lights_.size(); ++i) {
-        const BoundLight& l = world_.lights_[i];
+    const bool some = std::any_of(world_.lights().begin(), world_.lights().end(), says);
+    for (size_t i = 0; i < world_.lights().size(); ++i) {
+        const BoundLight& l = world_.lights()[i];
         if (!mayEmit(l, use.sky || says(l)) || !emitsPhotons(l).value_or(use.all && !some)) continue;
         if (use.learns && !guides(l)) continue;
         Light light;
@@ -49,13 +49,14 @@ EmissionPlan::EmissionPlan(LightKernels& lights, const PhotonUse& use) : world_(
 }
 
 std::vector<uint8_t> EmissionPlan::emits() const {
-    std::vector<uint8_t> by(world_.lights_.size(), 0);
+    std::vector<uint8_t> by(world_.lights().size(), 0);
     for (const Light& l : lights_) by[size_t(l.number)] = 1;
     return by;
 }
 
 bool EmissionPlan::moves() const {
-    return world_.moves_ || std::any_of(lights_.begin(), lights_.end(), [](const Light& l) { return l.light->instance->moving; });
+    return world_.moves() ||
+           std::any_of(lights_.begin(), lights_.end(), [](const Light& l) { return l.light->instance->moving; });
 }
 
 float EmissionPlan::travel() const {
@@ -70,8 +71,8 @@ float EmissionPlan::travel() const {
 
 std::vector<uint8_t> EmissionPlan::met(bool both) const {
     std::vector<uint8_t> by;
-    for (size_t i = 0; i < world_.shapes_.size(); ++i) {
-        const PhotonBinding& b = world_.bindings_[size_t(world_.bindingOf_[i])].photons;
+    for (size_t i = 0; i < world_.shapes().size(); ++i) {
+        const PhotonBinding& b = world_.bindings()[size_t(world_.bindingOf()[i])].photons;
         by.push_back(both ? b.intersectsBoth : b.meets);
     }
     by.push_back(0); // not empty
@@ -87,7 +88,7 @@ bool EmissionPlan::findPlace(LightKernels& lights, Light& l) {
         p.Ps = centre + to * radius;
         p.Ns = -to;
         p.N = Vec3();
-        world_.tellTime(p);
+        world_.setTime(p);
         q.push_back(p);
     }
     std::vector<LightValue> v(q.size());

@@ -35,7 +35,7 @@ void startArea(const WorldImpl& world, const EmissionPlan::Light& l, EmissionSta
     const Vec3 even = evenDirection(s.drawn.way);
     s.shape = emitter.samplePoint(s.drawn.place, s.drawn.choose, s.drawn.time, even, s.surface, perArea);
     if (!(perArea > 0) || !std::isfinite(perArea)) return;
-    if (world.accel_->hasSolids() && !world.accel_->keeps(world.numberOfShape_.at(s.shape), intersectsAt(s.surface),
+    if (world.accel().hasSolids() && !world.accel().keeps(world.numberOfShape().at(s.shape), intersectsAt(s.surface),
                                                           intersectsNormal(s.surface), s.drawn.time))
         return;
     const Vec3& n = intersectsNormal(s.surface);
@@ -60,8 +60,8 @@ ShadePoint queryOf(const WorldImpl& world, const EmissionPlan::Light& l, const E
     ShadePoint p;
     p.Ps = at;
     p.Ns = -s.dir;
-    p.shutter = world.shadesAtOpen_ ? 0 : s.drawn.time;
-    world.tellTime(p);
+    p.shutter = world.shadesAtOpen() ? 0 : s.drawn.time;
+    world.setTime(p);
     p.viewI = p.I = s.dir;
     if (l.light->kind == LightKind::Area) {
         p.surface = s.surface;
@@ -130,8 +130,8 @@ void startGenerated(LightKernels& lights, const EmissionPlan& plan, const Emissi
         rays[i].sample = &samples[i];
         q[i].ray = &rays[i];
         q[i].Ps = plan.centre;
-        q[i].shutter = lights.world().shadesAtOpen_ ? 0 : starts[i].drawn.time;
-        lights.world().tellTime(q[i]);
+        q[i].shutter = lights.world().shadesAtOpen() ? 0 : starts[i].drawn.time;
+        lights.world().setTime(q[i]);
         q[i].P = Vec3(transformPoint(l.light->instance->toCurrentAt(q[i].shutter), {0, 0, 0}));
         q[i].N = Vec3();
     }

@@ -42,10 +42,10 @@ std::vector<EmissionStart> startBlock(const StageSet& set, const PhotonJob& job,
             accel::Ray ray;
             ray.org = s.origin;
             ray.dir = s.dir;
-            ray.time = world.shadesAtOpen_ ? 0 : s.drawn.time;
+            ray.time = world.shadesAtOpen() ? 0 : s.drawn.time;
             ray.only = job.met;
             ray.sides = accel::Sides::Both;
-            if (world.fades_) ray.level = levelOf(job.numbers(first + of[l][k]));
+            if (world.fades()) ray.level = levelOf(job.numbers(first + of[l][k]));
             accel::Hit hit;
             s.length = set.intersector.intersect(ray, hit) ? hit.t : 0;
         }
@@ -121,11 +121,11 @@ bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         t.from[i] = {plan.lights()[size_t(s.drawn.light)].number, s.kept};
         r.media = set.photons.aboutLight(plan.lights()[size_t(s.drawn.light)], s);
         if (s.shape) // the atmosphere at the light is applied at the hit
-            if (const auto hazy = w.emittersInAtmosphere_.find(s.shape); hazy != w.emittersInAtmosphere_.end()) {
+            if (const auto hazy = w.emittersInAtmosphere().find(s.shape); hazy != w.emittersInAtmosphere().end()) {
                 r.lobeBinding = hazy->second;
                 r.lobeOrigin = intersectsAt(s.surface);
             }
-        if (w.fades_) sample.level = levelOf(sample.numbers);
+        if (w.fades()) sample.level = levelOf(sample.numbers);
     }
     beginTrace();
     const bool done = sched.run();

@@ -27,7 +27,7 @@ EmittedLight::EmittedLight(const StageSet& s)
 /// 0 where the shadow ray has all of the weight (ShadowRays::takeAlone).
 Color EmittedLight::differentShadow(const PathRay& r, float distance) {
     if (r.passed && r.shadowDiffers) return Color(0);
-    const std::vector<uint8_t>& only = world_.shadowVisibility_.shadowsOnly[r.type() == RayType::Specular];
+    const std::vector<uint8_t>& only = world_.shadowVisibility().shadowsOnly[r.type() == RayType::Specular];
     if (only.empty()) return Color(1);
     RayKind kind = kShadowKind;
     kind.set.only = only.data();
@@ -61,8 +61,8 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
     std::vector<ShadePoint> q;
     std::vector<const Sched::Task*> of;
     std::vector<LightValue> value;
-    for (const int number : world_.skies_) {
-        const BoundLight& l = world_.lights_[size_t(number)];
+    for (const int number : world_.skies()) {
+        const BoundLight& l = world_.lights()[size_t(number)];
         if (l.kind == LightKind::Ambient) continue; // ambient() handles it
         // Under the other hiders a sky is either a light of loops or a background for rays.
         if (!rules_.emissionCounts && (l.kind != LightKind::Environment || l.strategy != LightStrategy::Trace)) continue;
@@ -73,14 +73,14 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
             const PathRay& r = t->payload;
             if (!l.seenBy(*r.kind)) continue;
             // For a lobe that samples lights: a light that is off for its surface does not light it by chance either.
-            if (r.lobeBinding >= 0 && !world_.bindings_[size_t(r.lobeBinding)].lights.contains(number)) continue;
+            if (r.lobeBinding >= 0 && !world_.bindings()[size_t(r.lobeBinding)].lights.contains(number)) continue;
             if (photons_.bringsPhotons(r, number) || (r.guided() && !(r.trail & shading::kTrailMirrored))) continue;
             ShadePoint& p = q.emplace_back();
             p.Ps = r.origin;
             p.P = r.origin + r.dir;
             p.N = -r.dir;
-            p.shutter = world_.shadesAtOpen_ ? 0 : r.shutter();
-            world_.tellTime(p);
+            p.shutter = world_.shadesAtOpen() ? 0 : r.shutter();
+            world_.setTime(p);
             p.ray = &r;
             of.push_back(t);
             litBy_.push_back(store_.extraOf(r).lit);
@@ -104,8 +104,8 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
                     pdf = mixedPdf(r, l, pdf, r.dir);
                     if (l.sky && rules_.pickOne && r.lobeBinding >= 0)
                         pdf *= lightKernels_.chanceOf(number, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
-                    weight *= world_.settings_.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
-                    if (pdf > 0 && world_.shadowVisibility_.differs()) value[i].Cl *= differentShadow(r, 1e38f);
+                    weight *= world_.settings().lightOnly ? 0 : misWeight(r.lobePdf, pdf);
+                    if (pdf > 0 && world_.shadowVisibility().differs()) value[i].Cl *= differentShadow(r, 1e38f);
                 }
                 const Color light = r.weight * value[i].Cl * weight;
                 accumulator_.contribute(sched, {of[i]->target, light, LightEvent::Sky, &r, store_.extraOf(r).share,
@@ -115,7 +115,7 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
 }
 
 void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
-    const Settings& set = world_.settings_;
+    const Settings& set = world_.settings();
     std::vector<ShadePoint> q;
     std::vector<LightValue> value;
     for (size_t first = 0, end; first < met.size(); first = end) {
@@ -132,12 +132,12 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
             p.Ps = r.lobePdf >= 0 ? r.lobeOrigin : r.volumeBegin();
             litBy_.push_back(store_.extraOf(r).lit);
         }
-        const BoundLight& light = world_.lights_[size_t(met[first].light)];
+        const BoundLight& light = world_.lights()[size_t(met[first].light)];
         value.assign(q.size(), {});
         LitSurface lit;
         if (light.asksSurface) lit = litSurfaces_.querying(litBy_);
         std::vector<char> inMedium;
-        if (!world_.media_.empty())
+        if (!world_.media().empty())
             for (size_t i = first; i < end; ++i) inMedium.push_back(met[i].point->ray->medium() >= 0);
         shading::ParameterBlock given;
         const bool sent = ray && GatherCalls::lightParameters(*ray, *light.instance, given);
@@ -148,7 +148,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
         for (size_t i = 0; i < inMedium.size(); ++i) {
             if (!inMedium[i] || !value[i].lit) continue;
             const PathRay& r = *met[first + i].point->ray;
-            if (world_.media_[size_t(r.medium())].homogeneous) continue; // its flight has handled it
+            if (world_.media()[size_t(r.medium())].homogeneous) continue; // its flight has handled it
             const MediumPart part{r.medium(), 0, r.volumeBegin(), met[first + i].point->P};
             ShadowRay way{};
             way.ray = &r;
@@ -169,7 +169,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
                 if (rules_.pickOne && r.lobeBinding >= 0)
                     pdf *= lightKernels_.chanceOf(met[i].light, r.lobeBinding, r.lobeOrigin, r.bounces - 1);
                 weight = set.lightOnly ? 0 : misWeight(r.lobePdf, pdf);
-                if (pdf > 0 && world_.shadowVisibility_.differs())
+                if (pdf > 0 && world_.shadowVisibility().differs())
                     v.Cl *= differentShadow(r, length(intersectsAt(p.surface) - r.lobeOrigin));
             }
             if (const FreeFlight& flown = store_.extraOf(r).flown; flown.medium >= 0 && r.lobeBinding >= 0)
@@ -187,19 +187,19 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
 void EmittedLight::hits(const BatchContext& c, Sched& sched) {
     std::vector<Met> met;
     for (size_t i = 0; i < c.points.size(); ++i) {
-        const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];
+        const SurfaceBinding& b = world_.bindings()[size_t(c.bindings[i])];
         const PathRay& r = c.rays[i];
         if (b.areaLight < 0 || (b.matte && r.camera()) || (r.guided() && !(r.trail & shading::kTrailMirrored))) continue;
         if (!rules_.emissionCounts && r.lobePdf < 0 && !r.kind->asksLights) continue;
         if (r.lobeBinding >=
             0) { // a lobe that samples lights: a light that is off for its surface does not light it by chance either
-            if (!world_.bindings_[size_t(r.lobeBinding)].lights.contains(b.areaLight)) continue;
+            if (!world_.bindings()[size_t(r.lobeBinding)].lights.contains(b.areaLight)) continue;
         }
-        const BoundLight& light = world_.lights_[size_t(b.areaLight)];
+        const BoundLight& light = world_.lights()[size_t(b.areaLight)];
         if (light.mean || !light.seenBy(*r.kind)) continue;
         met.push_back({b.areaLight, c.targets[i], &c.points[i]});
         for (int part : light.parts)
-            if (world_.lights_[size_t(part)].kind == LightKind::Area) met.push_back({part, c.targets[i], &c.points[i]});
+            if (world_.lights()[size_t(part)].kind == LightKind::Area) met.push_back({part, c.targets[i], &c.points[i]});
     }
     std::stable_sort(met.begin(), met.end(), [](const Met& a, const Met& b) { return a.light < b.light; });
     emission(met, sched);

@@ -16,8 +16,8 @@ namespace alpenglow::integrator {
 void Walks::askSurfaces(Sched& sched) {
     if (photons_.photonTrace()) return;
     const WorldImpl& world = world_;
-    const auto number = [&](const Exit& x) { return world.bindingOf_[x.shape]; };
-    const auto silent = [&](const Exit& x) { return !world.bindings_[size_t(number(x))].entering; };
+    const auto number = [&](const Exit& x) { return world.bindingOf()[x.shape]; };
+    const auto silent = [&](const Exit& x) { return !world.bindings()[size_t(number(x))].entering; };
     const auto middle = std::stable_partition(exits_.begin(), exits_.end(), silent);
     std::stable_sort(middle, exits_.end(), [&](const Exit& a, const Exit& b) { return number(a) < number(b); });
     const std::span<Exit> asked(middle, exits_.end());
@@ -34,7 +34,7 @@ void Walks::askSurfaces(Sched& sched) {
 
 size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
     const WorldImpl& world = world_;
-    const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[exits[0].shape])];
+    const SurfaceBinding& b = world.bindings()[size_t(world.bindingOf()[exits[0].shape])];
     auto c = batches_.take();
     c->bound = &b.entering;
     c->binding = &b;

@@ -58,11 +58,11 @@ static Vec3 middle(const FreeFlight& f) { return f.origin + f.dir * (0.5f * f.le
 
 float MediumEvents::shareOfDistance(const FreeFlight& f, const BoundLight& l) const {
     const WorldImpl& w = world_;
-    const MediumSampling how = w.settings_.mediumSampling;
+    const MediumSampling how = w.settings().mediumSampling;
     if (!rules_.lightsAtRequests || !Equiangular::sees(f, l, how)) return 1;
     if (alone(f, l, how)) return 0;
     const auto q = Equiangular::of(f, l, how);
-    const float chance = lightKernels_.chanceOf(int(&l - w.lights_.data()), w.media_[size_t(f.medium)].binding, middle(f), 0);
+    const float chance = lightKernels_.chanceOf(int(&l - w.lights().data()), w.media()[size_t(f.medium)].binding, middle(f), 0);
     return misWeight(float(f.density(f.t)), float(q->density(f.t) * chance));
 }
 
@@ -98,13 +98,13 @@ public:
     }
 
 private:
-    uint32_t use() const { return kLightPoint + uint32_t(&light_ - stage_.world_.lights_.data()); }
+    uint32_t use() const { return kLightPoint + uint32_t(&light_ - stage_.world_.lights().data()); }
     static uint32_t vertexOf(const PathRay& r) { return childVertex(r.vertex, kSegmentEvent, 5); }
     /// In blocks, where the light supports them.
     bool runInRows() {
         auto c = stage_.batches_.take();
         c->between = true;
-        c->binding = &stage_.world_.bindings_[size_t(medium_.binding)];
+        c->binding = &stage_.world_.bindings()[size_t(medium_.binding)];
         c->points.clear();
         for (const Near& n : points_) {
             c->rays.push_back(*n.flight->ray);
@@ -138,8 +138,8 @@ private:
         p.Ns = -r.dir;
         p.viewI = p.I = p.Ps - r.begin();
         p.E = r.origin;
-        p.shutter = w.shadesAtOpen_ ? 0 : r.shutter();
-        w.tellTime(p);
+        p.shutter = w.shadesAtOpen() ? 0 : r.shutter();
+        w.setTime(p);
         p.P = Vec3(transformPoint(light_.instance->toCurrentAt(p.shutter), {0, 0, 0}));
         p.ray = &r;
         if (!area_) return;
@@ -148,9 +148,9 @@ private:
         const float choose = light_.emitter->chooses() ? numbers.one(vertexOf(r), use(), 0) : 0;
         const Vec2 u = numbers.pair(vertexOf(r), use(), 0);
         bool there = light_.emitter->sample(p.Ps, u, choose, p.shutter, s, p.surface, light_.pointNeeds);
-        if (there && w.accel_->hasSolids())
+        if (there && w.accel().hasSolids())
             there =
-                w.accel_->keeps(w.numberOfShape_.at(s.shape), intersectsAt(p.surface), intersectsNormal(p.surface), p.shutter);
+                w.accel().keeps(w.numberOfShape().at(s.shape), intersectsAt(p.surface), intersectsNormal(p.surface), p.shutter);
         if (!there || (s.shape->oneSided() && dot(intersectsNormal(p.surface), s.direction) >= 0)) s.pdf = 0; // or from its back
         p.shape = s.shape;
         p.P = intersectsAt(p.surface);
@@ -196,7 +196,7 @@ private:
         s.media = r.media;
         s.share = stage_.store_.extraOf(r).share;
         s.path = stage_.paths_.next(r.path, stage_.paths_.volume);
-        if (s.path) s.light = stage_.paths_.lights[size_t(&light_ - stage_.world_.lights_.data())];
+        if (s.path) s.light = stage_.paths_.lights[size_t(&light_ - stage_.world_.lights().data())];
         stage_.shadows_.queue.push_back(s);
     }
 
@@ -213,9 +213,9 @@ private:
 
 void MediumEvents::nearLights(std::span<RaySegment> segmentEvents, std::span<const Crossing> crossings, Sched& sched) {
     const WorldImpl& w = world_;
-    const Medium& m = w.media_[size_t(crossings[0].way.medium)];
-    const MediumSampling how = w.settings_.mediumSampling;
-    const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
+    const Medium& m = w.media()[size_t(crossings[0].way.medium)];
+    const MediumSampling how = w.settings().mediumSampling;
+    const WorldImpl::LightList& list = w.lightLists()[size_t(w.bindings()[size_t(m.binding)].lightList)];
     const LightChooser& chooser = w.chooserOf(list);
     const std::vector<int>& on = w.sampledOf(list);
     LightChooser::Chosen chosen;
@@ -235,7 +235,7 @@ void MediumEvents::nearLights(std::span<RaySegment> segmentEvents, std::span<con
         for (const auto& [k, chance] : chosen) {
             const int light = on[size_t(k)];
             if (list.ofAll && !list.lights.contains(light)) continue;
-            const auto q = Equiangular::of(x.way, w.lights_[size_t(light)], how);
+            const auto q = Equiangular::of(x.way, w.lights()[size_t(light)], how);
             if (!q) continue;
             asked.push_back({&x, light, chance, *q});
             numbers_.askOne(store_.random(*f.ray).numbers(), vertex, kLightPoint + uint32_t(light), 0);
@@ -248,12 +248,12 @@ void MediumEvents::nearLights(std::span<RaySegment> segmentEvents, std::span<con
         const float t = points.at(numbers_.one(i));
         const double density = points.density(t) * chance;
         const float share =
-            alone(x->way, w.lights_[size_t(light)], how) ? 1 : misWeight(float(density), float(x->way.density(t)));
+            alone(x->way, w.lights()[size_t(light)], how) ? 1 : misWeight(float(density), float(x->way.density(t)));
         if (density > 0 && share > 0)
             near[light].push_back({&x->way, &segmentEvents[x->flight], &x->weight, t, float(share / density)});
     }
     for (const auto& [light, points] : near) {
-        NearLight(*this, m, w.lights_[size_t(light)], points).run();
+        NearLight(*this, m, w.lights()[size_t(light)], points).run();
         if (shadows_.queue.size() > kShadowsAtOnce) shadows_.flush(sched);
     }
 }

@@ -46,7 +46,7 @@ struct Asking {
     uint32_t site() const { return uint32_t(s.site - c.bound->kernel->sites().data()); }
     const SurfaceBinding* binding() const {
         if (c.light) return c.lit ? c.lit->binding(first + lane) : nullptr;
-        return c.bindings.empty() ? nullptr : &set.context.world.bindings_[size_t(c.bindings[size_t(first + lane)])];
+        return c.bindings.empty() ? nullptr : &set.context.world.bindings()[size_t(c.bindings[size_t(first + lane)])];
     }
 
     Vec3 origin(const Vec3& w) const {
@@ -85,7 +85,7 @@ struct Asking {
         const PathRay& from = *point().ray;
         const bool diffuse = type == RayType::Diffuse;
         const SurfaceBinding* b = binding();
-        if (from.bounces + 1 > set.context.world.maxDepth_) return true;
+        if (from.bounces + 1 > set.context.world.maxDepth()) return true;
         return b && ((b->maxDiffuse >= 0 && from.diffuseBounces + diffuse > b->maxDiffuse) ||
                      (b->maxSpecular >= 0 && from.specularBounces + !diffuse > b->maxSpecular));
     }
@@ -134,8 +134,8 @@ void skySamples(const Asking& a, GatherRows& rows, int begin, int end, int count
 /// Oi of a hit whose shaders do not run for light.
 Color opacityAt(const Asking& a, const accel::Hit& hit, const Vec3& from, const Vec3& w, const RayKind* kind) {
     const WorldImpl& world = a.set.context.world;
-    const int binding = world.bindingOf_[hit.shape];
-    const Opacity& o = world.bindings_[size_t(binding)].opacityFor(kind->set.mode);
+    const int binding = world.bindingOf()[hit.shape];
+    const Opacity& o = world.bindings()[size_t(binding)].opacityFor(kind->set.mode);
     Color c = o.constant;
     if (!o.kernel) return c;
     ShadowRay as{};
@@ -192,7 +192,7 @@ void sendMet(const Asking& a, std::span<GatherMet> met, int begin, int end, int 
             sent.quiet = true;
             sent.asked = uint16_t(std::clamp(turns, int(sent.asked), 0xffff));
         }
-        out.push_back({sent, m.row, a.set.context.world.shapes_[m.hit.shape].get(), &g, sent.quiet, false, {}, {}});
+        out.push_back({sent, m.row, a.set.context.world.shapes()[m.hit.shape].get(), &g, sent.quiet, false, {}, {}});
         for (const GatherSite::Sent& s : g.sent) {
             const int elements = s.lengthRow < 0 ? 1 : int(std::clamp(a.f(s.lengthRow), 0.f, float(s.elements)));
             for (int k = 0; k < elements * rsl::ir::components(s.kind); ++k) out.back().values.push_back(a.f(s.row + k));
@@ -218,7 +218,7 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
     const RaySite& r = *a.s.rays;
     const ShadePoint& p = a.point();
     const bool aimed = a.triple(a.s.rows[1]) != Vec3(0); // refract() gives no direction at total reflection
-    const bool cast = g.category == GatherSite::Category::Rays && a.set.context.world.accel_ && aimed;
+    const bool cast = g.category == GatherSite::Category::Rays && a.set.context.world.canTrace() && aimed;
     RayKind kind{RayType::Specular, true, {}, 0};
     kind.set = a.set.store.raySetOf(a.s, [&](int row) { return a.f(row); }, p.shape, kind.type, kind.label);
     const RayKind* const kept = a.set.store.kindOf(kind);
@@ -369,7 +369,7 @@ void GatherCalls::tellGather(const BatchContext& c, int point, GatherSent& sent)
     const ShadePoint& p = c.points[size_t(point)];
     if (sent.shaded || p.shape != sent.met) return;
     sent.shaded = true;
-    const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[size_t(point)])];
+    const SurfaceBinding& b = world_.bindings()[size_t(c.bindings[size_t(point)])];
     for (const Output& o : sent.site->outputs) {
         if (o.of != Of::Surface && o.of != Of::Displacement && o.of != Of::Volume) continue;
         const InstanceRef& shader = o.of == Of::Surface        ? b.surface

@@ -42,7 +42,7 @@ void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& di
 
 void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const accel::Hit& hit, const Vec3& dir) {
     static const std::set<std::string> fixed = {"u", "v", "s", "t", "Ng", "dPdu", "dPdv", "I"};
-    const geometry::Shape& shape = *world.shapes_[hit.shape];
+    const geometry::Shape& shape = *world.shapes()[hit.shape];
     std::optional<geometry::SurfacePoint> at;
     for (const GatherSite::Output& o : g.outputs) {
         if (o.of != GatherSite::Of::Primitive && o.of != GatherSite::Of::Attribute && o.of != GatherSite::Of::Surface) continue;
@@ -53,11 +53,11 @@ void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const acce
             continue;
         }
         if (o.of == GatherSite::Of::Attribute) {
-            const SurfaceBinding& b = world.bindings_[size_t(world.bindingOf_[hit.shape])];
+            const SurfaceBinding& b = world.bindings()[size_t(world.bindingOf()[hit.shape])];
             if (const auto i = attributeOf(world, shape.attributes(), name, nullptr, &b)) putGathered(row, o, ShaderValue(*i));
             continue;
         }
-        if (!at) at = world.accel_->point(hit);
+        if (!at) at = world.accel().point(hit);
         if (const auto t = primitiveVariable(shape, *at, name)) putGathered(row, o, *t);
         else if (name == "u" || name == "v") putGathered(row, o, {name == "u" ? at->u : at->v});
         else if (name == "Ng" || name == "dPdu" || name == "dPdv")
@@ -77,11 +77,11 @@ bool firstOpaque(const StageSet& set, accel::Ray ray, const ShadowRay& as, const
     for (int layers = 0; layers < limits::kShadowLayers; ++layers) {
         if (!set.intersector.intersect(ray, hit)) return false;
         if (!(maxComponent(threshold) > 0)) return true;
-        const SurfaceBinding& b = set.context.world.bindings_[size_t(set.context.world.bindingOf_[hit.shape])];
+        const SurfaceBinding& b = set.context.world.bindings()[size_t(set.context.world.bindingOf()[hit.shape])];
         const Opacity& o = b.opacityFor(as.kind->set.mode);
         Color taken = o.constant;
         if (o.kernel) {
-            const OpacityQuery q{set.context.world.bindingOf_[hit.shape], hit, &as, &o.kernel};
+            const OpacityQuery q{set.context.world.bindingOf()[hit.shape], hit, &as, &o.kernel};
             set.opacities.opacities({&q, 1}, {&taken, 1});
         }
         through *= Color(1) - taken;

@@ -22,19 +22,19 @@ void put(float* to, const Color& c) { to[0] = c.x, to[1] = c.y, to[2] = c.z; }
 } // namespace
 
 bool GridShading::takes(const WorldImpl& w) {
-    const bool ownTime = w.settings_.hider == Hider::Raytrace ? w.shutter_.opens() : !w.shadesAtOpen_;
+    const bool ownTime = w.settings().hider == Hider::Raytrace ? w.shutter().opens() : !w.shadesAtOpen();
     // Grids start outside of all volumes: other origins than the eye may be inside.
-    const bool outside = w.media_.empty() || (w.eye_.count == 0 && w.frame_->options.projection == "perspective");
-    return w.settings_.micropolygons && w.settings_.hider != Hider::Path && !ownTime && outside;
+    const bool outside = w.media().empty() || (w.eye().count == 0 && w.frame().options.projection == "perspective");
+    return w.settings().micropolygons && w.settings().hider != Hider::Path && !ownTime && outside;
 }
 
 GridShading::GridShading(Pipeline& p)
-    : pipeline_(p), world_(p.world()), lattices_(world_), camera_(world_.frame_->options), stride_(kOutputs) {
-    seesSky_ = std::any_of(world_.skies_.begin(), world_.skies_.end(), [&](int l) {
-        const BoundLight& sky = world_.lights_[size_t(l)];
+    : pipeline_(p), world_(p.world()), lattices_(world_), camera_(world_.frame().options), stride_(kOutputs) {
+    seesSky_ = std::any_of(world_.skies().begin(), world_.skies().end(), [&](int l) {
+        const BoundLight& sky = world_.lights()[size_t(l)];
         return sky.kind == LightKind::Environment && sky.strategy == LightStrategy::Trace;
     });
-    for (const int width : world_.outputWidths_) {
+    for (const int width : world_.widthsOfOutputs()) {
         for (int k = 0; k < width; ++k) colour_.push_back(width % 3 == 0 ? uint8_t(k % 3) : 3);
         stride_ += size_t(width);
     }
@@ -89,7 +89,7 @@ void GridShading::intersect(std::span<const CameraRay> rays) {
         r.time = c.shutter;
         r.mask = visibilityBit(RayType::Camera);
         r.sides = shading::kCameraKind.set.sides;
-        if (world_.fades_) r.level = pipeline_.stages().store.levelOf(c);
+        if (world_.fades()) r.level = pipeline_.stages().store.levelOf(c);
         pipeline_.stages().intersector.clip(r);
     }
     pipeline_.stages().intersector.intersect(rays_, hits_, true);
@@ -138,9 +138,9 @@ void GridShading::aimAt(std::span<const MicropolygonShare> some) {
         const size_t first = i;
         for (; i < some.size() && some[i].key.shape == some[first].key.shape; ++i)
             work_.hits.push_back({some[i].key.prim, some[i].b1, some[i].b2, &work_.places[i], 0});
-        world_.shapes_[some[first].key.shape]->points(work_.hits, world_.needs_.footprints ? geometry::kNeedPartials : 0);
+        world_.shapes()[some[first].key.shape]->points(work_.hits, world_.needs().footprints ? geometry::kNeedPartials : 0);
     }
-    const uint64_t run = world_.prints_.newRun();
+    const uint64_t run = world_.prints().newRun();
     for (size_t i = 0; i < some.size(); ++i) {
         work_.rays.push_back(rayTo(some[i], work_.places[i], work_.points[i]));
         work_.points[i].run = run;
@@ -167,12 +167,12 @@ CameraRay GridShading::rayTo(const MicropolygonShare& s, const geometry::Surface
         point.distance = P.z - r.origin.z;
     }
     r.cosine = r.direction.z;
-    r.time = world_.shutter_.opens() ? float(world_.shutter_.open) : 0;
+    r.time = world_.shutter().opens() ? float(world_.shutter().open) : 0;
     r.px = int(s.key.prim);
     r.py = int(key.shape);
     r.grid = &point;
-    if (world_.needs_.footprints) {
-        const float rate = world_.bindings_[size_t(world_.bindingOf_[s.key.shape])].shadingRate;
+    if (world_.needs().footprints) {
+        const float rate = world_.bindings()[size_t(world_.bindingOf()[s.key.shape])].shadingRate;
         const Vec2 seen = shading::footprintAt(p, {r.width, r.spread}, r.direction, length(p.P - r.origin), rate);
         const Vec2 steps = lattices_.stepsOf(s, seen);
         point.du = steps.x, point.dv = steps.y;
@@ -216,7 +216,7 @@ bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit,
         return false;
     }
     geometry::SurfacePoint p;
-    world_.accel_->point(hit, p, 0);
+    world_.accel().point(hit, p, 0);
     s.origin = p.displaced ? geometry::offsetOrigin(p.displacedP, p.displacedN, p.facetError, ray.direction)
                            : geometry::offsetOrigin(p, ray.direction);
     s.weight *= clear;
@@ -226,7 +226,7 @@ bool GridShading::goesOn(Sample& s, const CameraRay& ray, const accel::Hit& hit,
 /// Whether a sample must be shaded at its own hit: it enters a volume, through which its path is its own, or it reaches a sky.
 bool GridShading::ownWay(const Sample& s, const accel::Hit& hit) const {
     if (s.n == 0) return seesSky_ && !hit.valid();
-    const SurfaceBinding& b = world_.bindings_[size_t(world_.bindingOf_[hit.shape])];
+    const SurfaceBinding& b = world_.bindings()[size_t(world_.bindingOf()[hit.shape])];
     return b.inside >= 0 || b.outside >= 0;
 }
 
@@ -296,7 +296,7 @@ bool GridShading::follow(std::span<const CameraRay> rays, std::span<SampleResult
         if (!shade(stop)) return false;
         show(rays, out);
     }
-    const float clampAt = world_.settings_.sampleClamp;
+    const float clampAt = world_.settings().sampleClamp;
     for (SampleResult& r : out) {
         const float m = maxComponent(r.color);
         if (clampAt > 0 && m > clampAt) r.color *= clampAt / m; // docs/design/slproject.md, "Sample clamp"

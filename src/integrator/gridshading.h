@@ -17,7 +17,7 @@ public:
     /// need values of their own: their time (an open shutter under raytrace) or a volume around the eye.
     static bool takes(const WorldImpl&);
     /// Whether samples without a hit are black and empty.
-    bool emptyIsBlack() const { return !seesSky_ && !world_.deferred_; }
+    bool emptyIsBlack() const { return !seesSky_ && !world_.deferred(); }
     /// Integrator::trace() for camera samples of the picture. The bits do not depend on what was shaded before.
     bool trace(std::span<const CameraRay>, std::span<SampleResult>, const StopFlag* stop);
     /// The same for CameraRay::depthOnly.

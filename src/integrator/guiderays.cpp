@@ -15,7 +15,7 @@ GuideRays::GuideRays(const StageSet& s) : Stage(s.context), store_(s.store) {
         return k && !k.kernel->facts().suspends &&
                std::any_of(k.sites.begin(), k.sites.end(), [](const SiteInfo& s) { return s.kind == SiteKind::Trace; });
     };
-    for (const SurfaceBinding& b : world_.bindings_) ends_.push_back(!mirrors(b.surfaceS));
+    for (const SurfaceBinding& b : world_.bindings()) ends_.push_back(!mirrors(b.surfaceS));
 }
 
 void GuideRays::aim(std::span<const Query> queries, Aim* aims) const {
@@ -64,7 +64,7 @@ void GuideRays::send(const Lobe& l, const Aim& a, const Vec3& w, const LobeValue
     const uint32_t vertex = childVertex(l.from.vertex, kGuideRay, 0);
     if (rules_.roulette && bounces > 3) {
         const auto dice = [&] { return store_.random(l.from).one(vertex, kRoulette, 0); };
-        const float q = world_.settings_.localRoulette ? rouletteLocal(bounces, l.weight, dice()) : rouletteOfPath(weight, dice);
+        const float q = world_.settings().localRoulette ? rouletteLocal(bounces, l.weight, dice()) : rouletteOfPath(weight, dice);
         if (!(q > 0)) return;
         weight = weight / q;
     }
@@ -106,7 +106,7 @@ float GuideRays::pdfBehindMirror(const PathRay& from) const {
 
 bool GuideRays::bringsNothing(const PathRay& r, int binding) const {
     return r.guided() && ends(binding) &&
-           !((r.trail & shading::kTrailMirrored) && world_.bindings_[size_t(binding)].areaLight >= 0);
+           !((r.trail & shading::kTrailMirrored) && world_.bindings()[size_t(binding)].areaLight >= 0);
 }
 
 } // namespace alpenglow::integrator

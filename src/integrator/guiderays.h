@@ -77,7 +77,7 @@ public:
 
 private:
     const CausticGuide* guide() const {
-        return rules_.pickOne && rules_.lightsAtRequests && world_.photons_ ? world_.photons_->guide.get() : nullptr;
+        return rules_.pickOne && rules_.lightsAtRequests && world_.photons() ? world_.photons()->guide.get() : nullptr;
     }
     std::vector<char> ends_; ///< by binding
     RayStore& store_;

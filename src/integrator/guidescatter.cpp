@@ -117,7 +117,7 @@ void GuideScatter::send(size_t block, int site, Lanes of, BatchContext& c, Sched
                      options.importance,
                      options.maxDistance},
                     points_[at].aim, w, f, v_.originOf(s, at, w), path,
-                    world_.media_.empty() ? from.media : media_.towards(c, int(at), w), sched);
+                    world_.media().empty() ? from.media : media_.towards(c, int(at), w), sched);
     }
 }
 

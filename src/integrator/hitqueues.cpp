@@ -15,13 +15,13 @@ HitQueues::HitQueues(const StageSet& s) : Stage(s.context), waitingKernels_(s.wa
 
 void HitQueues::add(const Sched::Task& task, const accel::Hit& hit, Sched& sched) {
     const PathRay& r = task.payload;
-    const SurfaceBinding& b = world_.bindings_[size_t(world_.bindingOf_[hit.shape])];
-    const bool primitive = world_.primitiveHit_ && b.asPrimitive(r.kind->set.mode, r.type());
-    const size_t g = size_t(b.group) + (primitive ? size_t(world_.groups_) : 0);
-    if (queues_.empty()) queues_.resize(size_t(world_.groups_) * (world_.primitiveHit_ ? 2 : 1));
+    const SurfaceBinding& b = world_.bindings()[size_t(world_.bindingOf()[hit.shape])];
+    const bool primitive = world_.primitiveHit() && b.asPrimitive(r.kind->set.mode, r.type());
+    const size_t g = size_t(b.group) + (primitive ? size_t(world_.groups()) : 0);
+    if (queues_.empty()) queues_.resize(size_t(world_.groups()) * (world_.primitiveHit() ? 2 : 1));
     Queue& q = queues_[g];
     if (q.hits.empty()) {
-        const rsl::CompiledKernel& k = *(primitive ? world_.primitiveHit_ : b.surfaceS).kernel;
+        const rsl::CompiledKernel& k = *(primitive ? world_.primitiveHit() : b.surfaceS).kernel;
         q.waits = k.facts().suspends;
         if (q.waits) q.room = size_t(waitingKernels_.roomFor(k, primitive ? nullptr : b.surfaceV.kernel.get(), sched));
         groups_.push_back(g);
@@ -45,7 +45,7 @@ void HitQueues::take(size_t group, BatchContext& c) {
     c.rays.swap(q.rays);
     c.targets.swap(q.targets);
     c.hits.swap(q.hits);
-    for (const accel::Hit& h : c.hits) c.bindings.push_back(world_.bindingOf_[h.shape]);
+    for (const accel::Hit& h : c.hits) c.bindings.push_back(world_.bindingOf()[h.shape]);
 }
 
 void HitQueues::clear() {

@@ -27,7 +27,7 @@ bool Intersector::castRows(std::span<const Sched::Task> slice) {
         float time[kBlock];
         for (int i = 0; i < n; ++i) {
             const RayKind& kind = *slice[first + size_t(i)].payload.kind;
-            if (kind.set.only || !world_.accel_->takesRows(kind.set.sides)) return false;
+            if (kind.set.only || !world_.accel().takesRows(kind.set.sides)) return false;
             block.mask[i] = visibilityBit(kind.type);
             time[i] = slice[first + size_t(i)].payload.sample->shutter;
             ++of[size_t(kind.type)];
@@ -38,7 +38,7 @@ bool Intersector::castRows(std::span<const Sched::Task> slice) {
             std::copy_n(rays.direction[q], kBlock, block.dir[q]);
         }
         std::copy_n(rays.maxDistance, kBlock, block.tfar);
-        world_.accel_->intersect(block, (1u << n) - 1, time, &hits[first]);
+        world_.accel().intersect(block, (1u << n) - 1, time, &hits[first]);
     }
     for (const RayType t : {RayType::Camera, RayType::Diffuse, RayType::Specular, RayType::Transmission})
         context_.raysOf(t) += of[size_t(t)];
@@ -49,7 +49,7 @@ bool Intersector::castRows(std::span<const Sched::Task> slice) {
 
 bool Intersector::blockInRows(std::span<const ShadowRay> asked, std::span<Color> out) {
     if (!inRows_) return false;
-    const auto plain = [&](const ShadowRay& s) { return !s.kind->set.only && world_.accel_->takesRows(s.kind->set.sides); };
+    const auto plain = [&](const ShadowRay& s) { return !s.kind->set.only && world_.accel().takesRows(s.kind->set.sides); };
     if (!std::all_of(asked.begin(), asked.end(), plain)) return false;
     constexpr int kWords = 16; // from ShadowRay::origin; dir and distance follow
     static_assert(offsetof(ShadowRay, dir) == 12 && offsetof(ShadowRay, distance) == 24);
@@ -72,7 +72,7 @@ bool Intersector::blockInRows(std::span<const ShadowRay> asked, std::span<Color>
             block.mask[i] = visibilityBit(ray.kind->type);
             time[i] = ray.time;
         }
-        world_.accel_->occluded(block, (1u << n) - 1, time, met);
+        world_.accel().occluded(block, (1u << n) - 1, time, met);
         for (int i = 0; i < n; ++i) {
             out[first + size_t(i)] = met[i] ? Color(0) : Color(1);
             counters_.hits += met[i];

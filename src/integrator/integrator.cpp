@@ -40,7 +40,7 @@ bool Integrator::trace(std::span<const CameraRay> r, std::span<SampleResult> out
     return impl_->pipeline.trace(r, out, stop);
 }
 bool Integrator::seesNothing(std::span<const geometry::Plane> sides) const {
-    return impl_->grids && impl_->grids->emptyIsBlack() && !sides.empty() && !impl_->pipeline.world().accel_->reachesInto(sides);
+    return impl_->grids && impl_->grids->emptyIsBlack() && !sides.empty() && !impl_->pipeline.world().accel().reachesInto(sides);
 }
 bool Integrator::unfinished() const { return impl_->pipeline.unfinished(); }
 const Counters& Integrator::counters() const { return impl_->pipeline.counters(); }

@@ -13,7 +13,7 @@ namespace alpenglow::integrator {
 Intersector::Intersector(const StageSet& s) : Stage(s.context) {}
 
 void Intersector::clip(accel::Ray& ray) const {
-    for (const auto& [point, normal] : world_.clippingPlanes_) {
+    for (const auto& [point, normal] : world_.clippingPlanes()) {
         double height = dot(normal, Vec3d(ray.org) - point), climb = dot(normal, Vec3d(ray.dir)), t = -height / climb;
         if (climb > 0) ray.tfar = std::min(ray.tfar, float(std::max(t, 0.0)));
         else if (climb < 0) ray.tnear = std::max(ray.tnear, float(std::min(t, 1e37)));
@@ -39,8 +39,8 @@ accel::Ray Intersector::rayOf(const PathRay& r) const {
 }
 
 bool Intersector::intersect(const accel::Ray& ray, accel::Hit& hit) {
-    world_.accel_->intersect(ray, hit);
-    if (world_.deferred_ && world_.deferred_->intersects(ray, hit.valid() ? hit.distance : INFINITY)) {
+    world_.accel().intersect(ray, hit);
+    if (world_.deferred() && world_.deferred()->intersects(ray, hit.valid() ? hit.distance : INFINITY)) {
         unfinished = true;
         hit = {};
     }
@@ -61,11 +61,11 @@ void Intersector::intersect(std::span<const accel::Ray> rays, std::span<accel::H
     inParts(rays.size(), context_.stop, [&](size_t at, size_t n) {
         const auto some = rays.subspan(at, n);
         const auto met = found.subspan(at, n);
-        if (together) world_.accel_->intersectTogether(some, met, context_.stop);
-        else world_.accel_->intersect(some, met, context_.stop);
+        if (together) world_.accel().intersectTogether(some, met, context_.stop);
+        else world_.accel().intersect(some, met, context_.stop);
     });
-    for (size_t i = 0; world_.deferred_ && i < rays.size(); ++i) {
-        if (!world_.deferred_->intersects(rays[i], found[i].valid() ? found[i].distance : INFINITY)) continue;
+    for (size_t i = 0; world_.deferred() && i < rays.size(); ++i) {
+        if (!world_.deferred()->intersects(rays[i], found[i].valid() ? found[i].distance : INFINITY)) continue;
         unfinished = true;
         found[i] = {};
     }
@@ -75,7 +75,7 @@ void Intersector::intersect(std::span<const accel::Ray> rays, std::span<accel::H
 
 void Intersector::intersectFew(std::span<const accel::Ray> rays, std::span<accel::Hit> found) {
     std::fill(found.begin(), found.end(), accel::Hit{});
-    world_.byOpacity_.few->intersect(rays, found, context_.stop);
+    world_.byOpacity().few->intersect(rays, found, context_.stop);
     counters_.tests += rays.size();
     for (const accel::Hit& h : found) counters_.hits += h.valid();
 }
@@ -83,9 +83,9 @@ void Intersector::intersectFew(std::span<const accel::Ray> rays, std::span<accel
 void Intersector::occluded(std::span<const accel::Ray> rays, std::span<uint8_t> blocked) {
     std::fill(blocked.begin(), blocked.end(), uint8_t(0));
     inParts(rays.size(), context_.stop,
-            [&](size_t at, size_t n) { world_.accel_->occluded(rays.subspan(at, n), blocked.subspan(at, n), context_.stop); });
-    for (size_t i = 0; world_.deferred_ && i < rays.size(); ++i) {
-        if (blocked[i] || !world_.deferred_->intersects(rays[i], INFINITY)) continue;
+            [&](size_t at, size_t n) { world_.accel().occluded(rays.subspan(at, n), blocked.subspan(at, n), context_.stop); });
+    for (size_t i = 0; world_.deferred() && i < rays.size(); ++i) {
+        if (blocked[i] || !world_.deferred()->intersects(rays[i], INFINITY)) continue;
         unfinished = true;
         blocked[i] = 1;
     }
@@ -95,7 +95,7 @@ void Intersector::occluded(std::span<const accel::Ray> rays, std::span<uint8_t> 
 
 void Intersector::begin(bool grids) {
     grids_ = grids;
-    inRows_ = world_.accel_->takesRows() && !world_.deferred_ && world_.clippingPlanes_.empty() && !world_.shadesAtOpen_;
+    inRows_ = world_.accel().takesRows() && !world_.deferred() && world_.clippingPlanes().empty() && !world_.shadesAtOpen();
 }
 
 void Intersector::cast(std::span<const Sched::Task> slice) {

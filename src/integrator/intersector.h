@@ -14,7 +14,7 @@ public:
     /// together: neighbouring rays are coherent.
     void intersect(std::span<const accel::Ray>, std::span<accel::Hit>, bool together = false);
     bool intersect(const accel::Ray&, accel::Hit&);
-    /// Nearest hits among the shapes that do not block all light, WorldImpl::byOpacity_.few. Rays and hits use its numbers.
+    /// Nearest hits among the shapes that do not block all light, WorldImpl::byOpacity().few. Rays and hits use its numbers.
     void intersectFew(std::span<const accel::Ray>, std::span<accel::Hit>);
     void occluded(std::span<const accel::Ray>, std::span<uint8_t>);
     /// Transmittance of shadow rays whose answer is available in rows of 16: 1 if unoccluded, else 0. Returns false, without

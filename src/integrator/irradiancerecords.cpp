@@ -41,7 +41,7 @@ std::optional<Color> IrradianceRecords::recorded(const BatchContext& c, const Si
     const float variation = number(site.variation, 0);
     if (!(variation > 0) || c.light || !p.ray || !p.ray->sample || p.ray->quiet) return {};
     if (!wholeHemisphere(number(s.occlusion ? s.occlusion->cone : s.rowCone, float(kPi / 2)))) return {};
-    const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[size_t(point)])];
+    const SurfaceBinding& b = world_.bindings()[size_t(c.bindings[size_t(point)])];
     Recording n;
     LightRecord& record = n.record;
     record.P = triple(s.rows[0]);
@@ -66,11 +66,11 @@ std::optional<Color> IrradianceRecords::recorded(const BatchContext& c, const Si
     const PathRay& from = *p.ray;
     const bool diffuse = kind->type == RayType::Diffuse;
     const int most = diffuse ? b.maxDiffuse : b.maxSpecular;
-    if (!s.occlusion && (from.bounces + 1 > world_.maxDepth_ || (diffuse && !world_.settings_.indirect) ||
+    if (!s.occlusion && (from.bounces + 1 > world_.maxDepth() || (diffuse && !world_.settings().indirect) ||
                          (most >= 0 && (diffuse ? from.diffuseBounces : from.specularBounces) + 1 > most)))
         return {};
     Color light;
-    if (world_.records_.find(record.call, record.P, record.N, light)) {
+    if (world_.records().find(record.call, record.P, record.N, light)) {
         ++counters_.interpolated;
         return light;
     }
@@ -187,7 +187,7 @@ void IrradianceRecords::keep(const Sched& sched) {
         }
         if (n.seen.empty() || !std::all_of(n.seen.begin(), n.seen.end(), isFinite)) continue;
         n.record.take(n.axes, n.rings, n.turns, n.seen, n.ways, n.pixel, n.most);
-        if (isFinite(n.record.light)) world_.records_.add(n.record);
+        if (isFinite(n.record.light)) world_.records().add(n.record);
     }
     forget();
 }

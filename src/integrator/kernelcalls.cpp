@@ -55,7 +55,7 @@ void takeReach(const BatchContext& c, const SiteInfo& s, int first, float* argum
     const size_t have = std::min(size_t(lanes), c.lightReach.size()), width = size_t(lanes);
     float* more = arguments + size_t(rowsOfArguments(s)) * width;
     std::fill_n(more, 2 * width, 0.f);
-    const uint32_t use = kLightPoint + uint32_t(c.lightNow < 0 ? c.host->world().lights_.size() : size_t(c.lightNow));
+    const uint32_t use = kLightPoint + uint32_t(c.lightNow < 0 ? c.host->world().lights().size() : size_t(c.lightNow));
     for (size_t lane = 0; lane < have; ++lane) {
         arguments[size_t(s.rows[0]) * width + lane] = c.lightReach[lane].distance;
         if (!(c.lightReach[lane].radius > 0) || size_t(first) + lane >= c.rays.size()) continue;

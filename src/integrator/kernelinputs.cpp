@@ -9,12 +9,12 @@ KernelInputs::KernelInputs(const StageSet& s) : Stage(s.context), answers(world_
 
 /// The parameters of a binding's surface in the order of a plan.
 const shading::ParameterRows* KernelInputs::parametersOf(int binding, const shading::BatchPlan& plan) {
-    parameters_.resize(world_.bindings_.size());
+    parameters_.resize(world_.bindings().size());
     auto& known = parameters_[size_t(binding)];
     for (const auto& rows : known)
         if (rows && rows->plan() == &plan) return rows.get();
     std::swap(known[0], known[1]);
-    known[0] = std::make_unique<const shading::ParameterRows>(plan, world_.bindings_[size_t(binding)].surface->parameters);
+    known[0] = std::make_unique<const shading::ParameterRows>(plan, world_.bindings()[size_t(binding)].surface->parameters);
     return known[0].get();
 }
 
@@ -22,11 +22,11 @@ const shading::ParameterRows* KernelInputs::parametersOf(int binding, const shad
 void KernelInputs::viewsOf(const BatchContext& c) {
     views.clear();
     viewOf.clear();
-    slotOf_.resize(world_.bindings_.size(), -1);
+    slotOf_.resize(world_.bindings().size(), -1);
     for (int b : c.bindings) {
         int& slot = slotOf_[size_t(b)];
         if (slot < 0) {
-            const InstanceRef& i = world_.bindings_[size_t(b)].surface;
+            const InstanceRef& i = world_.bindings()[size_t(b)].surface;
             slot = int(views.size());
             views.push_back(i->view());
             views.back().rows = parametersOf(b, *c.bound->plan);

@@ -10,8 +10,8 @@ namespace alpenglow::integrator {
 LastSkies::LastSkies(const StageSet& s)
     : Stage(s.context), accumulator_(s.accumulator), lightKernels_(s.lightKernels), paths_(s.paths), litSurfaces_(s.litSurfaces),
       media_(s.media), shadows_(s.shadows) {
-    for (const int number : world_.skies_) {
-        const BoundLight& light = world_.lights_[size_t(number)];
+    for (const int number : world_.skies()) {
+        const BoundLight& light = world_.lights()[size_t(number)];
         if (!light.sky && light.kind != LightKind::Ambient) skies_.push_back(number); // ambient() handles ambient light
     }
 }
@@ -21,13 +21,13 @@ void LastSkies::send(const BatchContext& c, std::span<const LastRay> rays) {
 }
 
 void LastSkies::send(const BatchContext& c, std::span<const LastRay> rays, int number) {
-    const BoundLight& light = world_.lights_[size_t(number)];
+    const BoundLight& light = world_.lights()[size_t(number)];
     std::vector<ShadePoint> q;
     std::vector<const LastRay*> of;
     std::vector<int> surfaces;
     for (const LastRay& r : rays) {
         if (!light.seenBy(*r.kind)) continue;
-        if (!world_.bindings_[size_t(c.bindings[size_t(r.point)])].lights.contains(number)) continue;
+        if (!world_.bindings()[size_t(c.bindings[size_t(r.point)])].lights.contains(number)) continue;
         const ShadePoint& at = c.points[size_t(r.point)];
         ShadePoint& p = q.emplace_back();
         p.Ps = r.origin;

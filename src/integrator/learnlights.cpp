@@ -17,14 +17,14 @@ constexpr size_t kFewest = 40;         ///< samples of a light
 bool mayTrace(const WorldImpl& w) {
     if (hasDeferred(w)) return false; // the world may be replaced while rays are traced
     const auto bakes = [](const SiteInfo& s) { return s.kind == SiteKind::Bake || s.kind == SiteKind::Bake3d; };
-    return std::none_of(w.bindings_.begin(), w.bindings_.end(), [&](const SurfaceBinding& b) { // they would be baked, too
+    return std::none_of(w.bindings().begin(), w.bindings().end(), [&](const SurfaceBinding& b) { // they would be baked, too
         return b.surfaceS && std::any_of(b.surfaceS.sites.begin(), b.surfaceS.sites.end(), bakes);
     });
 }
 
 bool mayGuide(const WorldImpl& w, const BoundLight& l) {
     if (!l.kernel || !l.importance || l.mean || l.hazy || l.instance->moving) return false;
-    return l.isSky() || (l.kind == LightKind::Area && l.emitter && l.emitter->followsDirections() && !w.accel_->hasSolids());
+    return l.isSky() || (l.kind == LightKind::Area && l.emitter && l.emitter->followsDirections() && !w.accel().hasSolids());
 }
 
 LightDomain domainOf(const BoundLight& l) { return l.isSky() ? LightDomain() : LightDomain(l.emitter->flat()[0]); }
@@ -33,19 +33,19 @@ LightDomain domainOf(const BoundLight& l) { return l.isSky() ? LightDomain() : L
 
 bool mayTraceBefore(const World& world) {
     const auto* w = dynamic_cast<const WorldImpl*>(&world); // null: a picture that is known, as tests have it
-    return w && w->accel_ && w->settings_.hider == Hider::Path && mayTrace(*w);
+    return w && w->canTrace() && w->settings().hider == Hider::Path && mayTrace(*w);
 }
 
 bool mayGuideLights(const World& world) {
     if (!mayTraceBefore(world)) return false;
     const auto& w = static_cast<const WorldImpl&>(world);
-    if (!w.photons_) return false;
-    for (const WorldImpl::LightList& l : w.lightLists_)
+    if (!w.photons()) return false;
+    for (const WorldImpl::LightList& l : w.lightLists())
         if (l.ofAll || !l.chooser.empty()) return false;
-    return std::any_of(w.lights_.begin(), w.lights_.end(), [&](const BoundLight& l) { return mayGuide(w, l); });
+    return std::any_of(w.lights().begin(), w.lights().end(), [&](const BoundLight& l) { return mayGuide(w, l); });
 }
 
-void forgetLights(const World& world) { static_cast<const WorldImpl&>(world).photons_->lightGuides.clear(); }
+void forgetLights(const World& world) { static_cast<const WorldImpl&>(world).photons()->lightGuides.clear(); }
 
 bool learnLights(const std::shared_ptr<const World>& world, std::span<const CameraRay> rays, Diagnostics& d, const StopFlag* stop,
                  LightGuideFigures& f) {
@@ -58,18 +58,18 @@ bool learnLights(const std::shared_ptr<const World>& world, std::span<const Came
         const auto some = rays.subspan(first, std::min(kAtOnce, rays.size() - first));
         if (!pipeline.trace(some, std::span(results).first(some.size()), stop)) return false;
     }
-    std::vector<std::vector<SeenLight>> by(of->lights_.size());
+    std::vector<std::vector<SeenLight>> by(of->lights().size());
     std::vector<Vec3> blocked;
     for (const SeenSample& s : seen)
         if (s.light == SeenSample::kBlocked) blocked.push_back(s.seen.P);
-        else if (mayGuide(*of, of->lights_[size_t(s.light)]) && std::isfinite(s.seen.weight) &&
-                 (s.seen.pdf > 0 || of->lights_[size_t(s.light)].guidable))
+        else if (mayGuide(*of, of->lights()[size_t(s.light)]) && std::isfinite(s.seen.weight) &&
+                 (s.seen.pdf > 0 || of->lights()[size_t(s.light)].guidable))
             by[size_t(s.light)].push_back(s.seen);
     f = {};
     LightGuides guides(by.size());
     for (size_t i = 0; i < by.size(); ++i) {
         if (by[i].size() < kFewest) continue;
-        const BoundLight& l = of->lights_[i];
+        const BoundLight& l = of->lights()[i];
         const auto guide = l.guidable ? std::make_shared<const LightGuide>(domainOf(l), by[i], blocked)
                                       : std::make_shared<const LightGuide>(domainOf(l), by[i]);
         f.samples += by[i].size();
@@ -81,7 +81,7 @@ bool learnLights(const std::shared_ptr<const World>& world, std::span<const Came
         guides[i] = guide;
     }
     if (f.lights == 0) guides.clear();
-    of->photons_->lightGuides = std::move(guides);
+    of->photons()->lightGuides = std::move(guides);
     return true;
 }
 

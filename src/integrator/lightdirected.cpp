@@ -28,8 +28,8 @@ std::optional<Vec3> LightDirected::draw(Vec2& u) const {
 }
 
 bool MediumEvents::surfacesAim() const {
-    return world_.scatters_ && rules_.pickOne && rules_.lightsAtRequests &&
-           world_.settings_.mediumSampling != MediumSampling::Distance;
+    return world_.scatters() && rules_.pickOne && rules_.lightsAtRequests &&
+           world_.settings().mediumSampling != MediumSampling::Distance;
 }
 
 /// Tries the side of the surface that the ray arrives from first, then the other one.
@@ -40,7 +40,7 @@ LightDirected MediumEvents::atSurfaceInMedium(const KernelRun& c, size_t point) 
     for (const Vec3& side : {n, -n}) {
         const int medium = MediaStacks::mediumOf(media_.towards(c, int(point), side));
         if (medium < 0) continue;
-        const Medium& m = world_.media_[size_t(medium)];
+        const Medium& m = world_.media()[size_t(medium)];
         if (!m.homogeneous || !(maxComponent(m.homogeneous->scattering) > 0)) continue;
         float away = 0;
         const Vec3 to = lightDirection(m, ray, p.P, &away);

@@ -47,7 +47,7 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
     if (s.kind == SiteKind::Occlusion) {
         std::vector<ShadowRay> rays;
         const size_t had = occlusion_.hemispheres.size();
-        if (world_.accel_)
+        if (world_.canTrace())
             occlusion_.hemisphereRays(c, s, p, p.Ps, p.lit, row, Color(1), shading::kNoAccumulator, site, occurrence, rays);
         else value.radiance = Color(1);
         std::vector<Color> left(rays.size());
@@ -56,14 +56,14 @@ shading::TargetValue LightKernels::followRay(BatchContext& c, const SiteInfo& s,
         occlusion_.hemispheres.resize(had);
         return value;
     }
-    if (s.kind != SiteKind::Trace || !p.ray || !world_.accel_) return value; // lights being measured see no geometry
+    if (s.kind != SiteKind::Trace || !p.ray || !world_.canTrace()) return value; // lights being measured see no geometry
     return nested_.trace(c, s, point, row, occurrence);
 }
 
 /// Answers a gather() in a light's kernel.
 void LightKernels::gather(BatchContext& c, const SiteInfo& s, int first, std::span<uint32_t> asked) {
     const int lanes = c.requestLanes;
-    if (!world_.accel_ || !c.points[size_t(first)].ray) { // lights being measured see no geometry: one ray without a hit
+    if (!world_.canTrace() || !c.points[size_t(first)].ray) { // lights being measured see no geometry: one ray without a hit
         GatherRows& g = c.gathers[{s.gather->number, first}];
         g.width = s.gather->width;
         g.counts.assign(size_t(lanes), 1);
@@ -176,7 +176,7 @@ void LightKernels::evaluateLight(const BoundLight& light, std::vector<ShadePoint
         k.run(&c->batch->call());
         c->ran();
     }
-    if (world_.clouds_ && world_.clouds_->notesLights) world_.clouds_->noteLights(light, call.of);
+    if (world_.clouds().notesLights) world_.clouds().noteLights(light, call.of);
     const auto& b = *c->batch;
     queries.swap(c->points);
     for (size_t i = 0; i < queries.size(); ++i) {
@@ -209,7 +209,7 @@ void LightKernels::evaluateLight(const BoundLight& light, std::vector<ShadePoint
 }
 
 float LightKernels::chanceOf(int light, int binding, const Vec3& from, int bounces) const {
-    const WorldImpl::LightList& list = world_.lightLists_[size_t(world_.bindings_[size_t(binding)].lightList)];
+    const WorldImpl::LightList& list = world_.lightLists()[size_t(world_.bindings()[size_t(binding)].lightList)];
     const LightChooser& chooser = world_.chooserAt(list, bounces);
     if (chooser.empty()) return 1;
     const std::vector<int>& on = world_.sampledOf(list);

@@ -75,7 +75,7 @@ std::vector<std::shared_ptr<BatchContext>> LightOutputs::lightOutputBatches(cons
             ray.path = 0;   // light paths classify the light of Ci only
             ray.extra = -1; // belongs to the batch, which may be gone before the strips that wait here
             run->bindings.push_back(c.bindings[of[k]]);
-            const size_t outputs = world_.lightOutputs_.size();
+            const size_t outputs = world_.lightOutputs().size();
             run->targets.push_back(ray.counts ? accumulator_.lightTargets[size_t(ray.sample->path) * outputs + size_t(o.number)]
                                               : accumulator_.nowhere);
             run->points[k] = c.points[of[k]];
@@ -96,7 +96,7 @@ std::vector<std::shared_ptr<BatchContext>> LightOutputs::lightOutputBatches(cons
 
 void LightOutputs::finishLightOutputs(BatchContext& c, int first, int lanes, Sched& sched) {
     const int output = c.batch->output(c.aside->slot);
-    const bool triple = world_.lightOutputs_[size_t(c.aside->number)].size == 3;
+    const bool triple = world_.lightOutputs()[size_t(c.aside->number)].size == 3;
     for (int i = first; output >= 0 && i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[size_t(i)];
         if (!ray.counts) continue;
@@ -128,7 +128,8 @@ std::vector<LightOutputRequest> LightOutputs::shareLight(const BatchContext& c, 
                     ++counters_.nonFinite;
                     continue;
                 }
-                if (world_.lightOutputs_[size_t(run->aside->number)].size == 1) { // a scalar uses the luminance of the throughput
+                if (world_.lightOutputs()[size_t(run->aside->number)].size ==
+                    1) { // a scalar uses the luminance of the throughput
                     const Color& through = run->rays[size_t(point)].weight;
                     for (int k = 0; k < 3; ++k) weight[k] *= through[k] > 0 ? luminance(through) / through[k] : 0;
                 }

@@ -25,11 +25,11 @@ bool reflects(const PathRay& ray, const ShadePoint& p, const Vec3& w) {
 int LightPathStates::labelOf(const std::string& name) const { return name.empty() ? -1 : automaton->label(name); }
 
 LightPathStates::LightPathStates(const StageSet& s) : Stage(s.context) {
-    const Settings& set = world_.settings_;
+    const Settings& set = world_.settings();
     if (set.hider != Hider::Path || !set.lightPaths) return;
     using enum scene::PathEvent;
     automaton = set.lightPaths.get();
-    for (const BoundLight& l : world_.lights_) {
+    for (const BoundLight& l : world_.lights()) {
         const bool sky = l.kind == LightKind::Environment || l.kind == LightKind::Ambient;
         lights.push_back(automaton->symbol(sky ? Sky : Light, scene::PathScattering::None, labelOf(groupOf(l)),
                                            labelOf(l.source ? l.source->handle : l.handle)));

@@ -17,7 +17,7 @@ public:
     /// After scattering toward w, unit
     uint16_t atLobe(const LobeKind&, const RayKind&, bool delta, const ShadePoint&, const PathRay&, const Vec3& w) const;
     uint16_t atLight(uint16_t path, const BoundLight& l) const {
-        return path ? automaton->next(path, lights[size_t(&l - world_.lights_.data())]) : 0;
+        return path ? automaton->next(path, lights[size_t(&l - world_.lights().data())]) : 0;
     }
     /// Photons count as reflected by a mirror, coming from a light without a label.
     uint16_t atPhotons(uint16_t path) const { return next(next(path, mirror), loopLight); }

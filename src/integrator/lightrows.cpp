@@ -17,7 +17,7 @@ bool LightSampling::inRows(const BoundLight& l, const BoundKernel& of) const {
     const bool emitter = l.kind == LightKind::Area;
     if (!of || l.hazy || l.asksSurface || l.channels || l.sentCl >= 0 || (emitter && !l.emitter)) return false;
     if (!emitter && of.plan->readsNormal()) return false; // it is the shading normal of the lit point, which rows lack
-    if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel_->hasSolids() : l.isSky() || l.cone) return false;
+    if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel().hasSolids() : l.isSky() || l.cone) return false;
     for (size_t i = 0; emitter && i < l.emitter->flat().size(); ++i)
         if (of.plan->overriddenBy(l.emitter->flatShape(i))) return false;
     const auto& k = *of.kernel;
@@ -35,8 +35,8 @@ void LightSampling::askInRows(const BoundLight& light, const BatchContext& c) {
     call->ownShadows.clear();
     if (!call->batch) call->batch = std::make_shared<shading::Batch>();
     const std::span<const float> rows(lamp_);
-    parameters_.resize(world_.lights_.size());
-    auto& parameters = parameters_[size_t(&light - world_.lights_.data())];
+    parameters_.resize(world_.lights().size());
+    auto& parameters = parameters_[size_t(&light - world_.lights().data())];
     if (!parameters) parameters = std::make_unique<const shading::ParameterRows>(*light.kernel.plan, light.instance->parameters);
     const shading::InstanceView view{&light.instance->parameters, &light.instance->toCurrent, nullptr, parameters.get()};
     call->batch->assign(light.kernel.kernel, *light.kernel.plan,

@@ -26,8 +26,8 @@ Vec3 originOfLight(const ShaderInstance& of, float shutter) {
 }
 
 const LightGuide* guideOf(const WorldImpl& w, const BoundLight& l) {
-    if (!w.photons_ || w.photons_->lightGuides.empty()) return nullptr;
-    return w.photons_->lightGuides[size_t(&l - w.lights_.data())].get();
+    if (!w.photons() || w.photons()->lightGuides.empty()) return nullptr;
+    return w.photons()->lightGuides[size_t(&l - w.lights().data())].get();
 }
 
 GuidedDraw::GuidedDraw(const LightGuide* guide, const Vec3& from, float& x) {
@@ -61,7 +61,7 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         } else if (!(light.mean ? light.emitter->sampleSurface(p.Ps, u.pair, u.choose, p.shutter, s, p.surface, light.pointNeeds)
                                 : light.emitter->sample(p.Ps, u.pair, u.choose, p.shutter, s, p.surface, light.pointNeeds)))
             return false;
-        if (world.accel_->hasSolids() && !world.accel_->keeps(world.numberOfShape_.at(s.shape), intersectsAt(p.surface),
+        if (world.accel().hasSolids() && !world.accel().keeps(world.numberOfShape().at(s.shape), intersectsAt(p.surface),
                                                               intersectsNormal(p.surface), p.shutter))
             return false; // the part of a lamp outside of its CSG solid
         mix();

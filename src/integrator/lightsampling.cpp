@@ -20,8 +20,8 @@ LightSampling::LightSampling(const StageSet& s, const VertexStages& v)
     : VertexStage(s, v), accumulator_(s.accumulator), batches_(s.batches), connection_(v.connection), gathered_(v.gather),
       inputs_(s.inputs), lightKernels_(s.lightKernels), litSurfaces_(s.litSurfaces), media_(s.media),
       mediumEvents_(s.mediumEvents), paths_(s.paths), store_(s.store), shadows_(s.shadows), surfaces_(s.surfaces) {
-    if (!world_.accel_) return; // not a complete world
-    for (const BoundLight& l : world_.lights_) inRows_.push_back(inRows(l, l.kernel));
+    if (!world_.canTrace()) return; // not a complete world
+    for (const BoundLight& l : world_.lights()) inRows_.push_back(inRows(l, l.kernel));
     chosen_ = std::make_unique<ChosenLights>(*this, s, v);
 }
 
@@ -32,7 +32,7 @@ void LightSampling::run(BatchContext& c, Sched& sched) {
     given_.clear();
     v_.several = drawsSeveral();
     if (paths_.automaton) surfaces_.pointsOfRows(c); // needed to tell reflection from transmission
-    const WorldImpl::LightList& list = world_.lightLists_[size_t(c.binding->lightList)];
+    const WorldImpl::LightList& list = world_.lightLists()[size_t(c.binding->lightList)];
     if (choosesLights(list)) {
         findLit(nullptr);
         if (!v_.litBlocks.empty()) chosen_->light(list, c, sched);
@@ -40,13 +40,13 @@ void LightSampling::run(BatchContext& c, Sched& sched) {
     }
     for (const int number : world_.sampledOf(list)) {
         if (list.ofAll && !list.lights.contains(number)) continue;
-        const BoundLight& light = world_.lights_[size_t(number)];
+        const BoundLight& light = world_.lights()[size_t(number)];
         findLit(&light);
         if (c.between) takeParts(light, c);
         if (!v_.litBlocks.empty()) lightAlone(light, c, sched);
     }
-    for (const int number : world_.skies_) {
-        const BoundLight& light = world_.lights_[size_t(number)];
+    for (const int number : world_.skies()) {
+        const BoundLight& light = world_.lights()[size_t(number)];
         if (!light.guidable || !rules_.pickOne || v_.waits || c.between || !guideOf(world_, light) ||
             !list.lights.contains(number))
             continue;
@@ -214,7 +214,7 @@ void LightSampling::takeParts(const BoundLight& light, const BatchContext& c) {
 }
 
 bool LightSampling::needsPoints(const SurfaceBinding& b) const {
-    const WorldImpl::LightList& list = world_.lightLists_[size_t(b.lightList)];
+    const WorldImpl::LightList& list = world_.lightLists()[size_t(b.lightList)];
     const std::vector<int>& on = world_.sampledOf(list);
     return !rules_.pickOne || paths_.automaton || choosesLights(list) ||
            !std::all_of(on.begin(), on.end(), [&](int l) { return inRows_[size_t(l)] != 0; });

@@ -56,7 +56,7 @@ void LightSampling::askQueries(const BoundLight& light, const BoundKernel* group
         call.lit = &lit;
     }
     std::vector<char> inMedium;
-    if (light.hazy && !world_.media_.empty()) {
+    if (light.hazy && !world_.media().empty()) {
         for (const BlockQuery& a : v_.asked)
             inMedium.push_back(MediaStacks::mediumOf(media_.towards(c, a.point, a.sample.direction)) >= 0);
         call.inMedium = &inMedium;

@@ -19,7 +19,7 @@ LitSurface LitSurfaces::querying(std::span<const int> of) const {
     LitSurface lit;
     lit.binding = [this, of](int q) -> const SurfaceBinding* {
         const int b = of[size_t(q)] < 0 ? -1 : values[size_t(of[size_t(q)])].binding;
-        return b < 0 ? nullptr : &world_.bindings_[size_t(b)];
+        return b < 0 ? nullptr : &world_.bindings()[size_t(b)];
     };
     lit.output = [this, of](int q, const std::string& name, std::vector<float>& v) {
         return of[size_t(q)] >= 0 && values[size_t(of[size_t(q)])].output(name, v);

@@ -82,7 +82,7 @@ void LobeRequests::beginSite(Site& s, int number, const BatchContext& c) {
     if (s.lighting) s.rays = s.info->kind == SiteKind::Diffuse ? &kDiffuseKind : &kSpecularKind;
     else
         s.rays = store_.kindOf({s.info->rays->rays, true, s.info->rays->set, s.info->label,
-                                s.info->trace->hemisphere && world_.globalMaps_, s.lights, s.info->trace->apart});
+                                s.info->trace->hemisphere && world_.globalMaps(), s.lights, s.info->trace->apart});
     s.diffuse = s.rays->type == RayType::Diffuse;
     s.begin(v_.blocks);
     s.walks = s.info->kind == SiteKind::Subsurface;

@@ -37,18 +37,18 @@ const Media* MediaStacks::beyond(const SurfaceBinding& b, const Media* from, con
 }
 
 const Media* MediaStacks::towards(const KernelRun& c, int point, const Vec3& w) {
-    if (world_.media_.empty() || size_t(point) >= c.bindings.size()) return nullptr;
+    if (world_.media().empty() || size_t(point) >= c.bindings.size()) return nullptr;
     const PathRay& ray = c.rays[size_t(point)];
     if (c.between) return ray.media;
     const ShadePoint& p = c.points[size_t(point)];
-    const Media* m = beyond(world_.bindings_[size_t(c.bindings[size_t(point)])], ray.media, p.surface.n, ray.dir, w);
+    const Media* m = beyond(world_.bindings()[size_t(c.bindings[size_t(point)])], ray.media, p.surface.n, ray.dir, w);
     tellLost(m, p);
     return m;
 }
 
 void MediaStacks::shadowsInMedia(std::span<ShadowRay> rays, const Vec3& a, const Vec3& b, const Vec3& at,
                                  const geometry::SurfacePoint* s, const SurfaceBinding* binding) {
-    if (world_.media_.empty() || !s) return;
+    if (world_.media().empty() || !s) return;
     const auto isHere = [&](const Vec3& x) { return length(x - at) <= geometry::roundingError(x) + 4 * s->pError; };
     for (ShadowRay& r : rays) {
         if (!isHere(a) && isHere(b) && r.distance < 1e30f) { // media are known here, not at the other end
@@ -73,7 +73,7 @@ void MediaStacks::dim(std::span<const MediumPart> parts, std::span<const ShadowR
     std::vector<ShadePoint> points;
     std::vector<AtmosphereEffect> hazes;
     for (size_t first = 0, end; first < order.size(); first = end) {
-        const Medium& m = world_.media_[size_t(order[first]->medium)];
+        const Medium& m = world_.media()[size_t(order[first]->medium)];
         points.clear();
         for (end = first; end < order.size() && order[end]->medium == order[first]->medium; ++end) {
             const MediumPart& part = *order[end];
@@ -90,11 +90,11 @@ void MediaStacks::dim(std::span<const MediumPart> parts, std::span<const ShadowR
             p.Ci = p.Oi = Color(1);
             p.ray = rays[part.ray].ray;
             p.shutter = rays[part.ray].time;
-            world_.tellTime(p);
+            world_.setTime(p);
         }
         if (points.empty()) continue;
         hazes.assign(points.size(), {});
-        atmosphere_.atmosphereEffects(m, world_.bindings_[size_t(m.binding)], points, hazes, true);
+        atmosphere_.atmosphereEffects(m, world_.bindings()[size_t(m.binding)], points, hazes, true);
         for (size_t k = first; k < end; ++k) {
             const Color& left = hazes[k - first].slope;
             for (int i = 0; i < 3; ++i) out[order[k]->ray][i] *= std::isfinite(left[i]) ? std::max(left[i], 0.f) : 0;

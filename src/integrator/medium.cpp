@@ -76,7 +76,7 @@ bool MediumEvents::leaks(const RaySegment& f) {
 /// Samples the events on a segment up to a surface; returns the scattering point, if any.
 std::optional<MediumEvents::Crossing> MediumEvents::cross(RaySegment& f, size_t flight, Vec2 u, Sched& sched) {
     const PathRay& ray = *f.ray;
-    const Homogeneous& h = *world_.media_[size_t(ray.medium())].homogeneous;
+    const Homogeneous& h = *world_.media()[size_t(ray.medium())].homogeneous;
     const Color before = ray.weight, left = h.left(f.length);
     glow(f, h, sched);
     const bool both = ray.counts; // keeps opacity and depth of camera rays exact
@@ -128,13 +128,13 @@ void MediumEvents::pass(RaySegment& f, Sched& sched) {
     PathRay r = ray;
     const RayExtra& extra = store_.extraOf(ray);
     r.weight = (extra.fade.fades() ? extra.whole : ray.weight) * f.left;
-    if (const int medium = ray.medium(); medium >= 0 && !world_.media_[size_t(medium)].homogeneous) {
+    if (const int medium = ray.medium(); medium >= 0 && !world_.media()[size_t(medium)].homogeneous) {
         std::vector<ShadePoint> at(1, p); // its shader runs up to here
         at[0].ray = &ray;
         if (ray.parted) at[0].I = p.P - ray.volumeBegin();
         at[0].Ci = at[0].Oi = Color(0);
         AtmosphereEffect h;
-        atmosphere_.atmosphereEffects(world_.media_[size_t(medium)], world_.bindings_[size_t(f.binding)], at, {&h, 1}, true);
+        atmosphere_.atmosphereEffects(world_.media()[size_t(medium)], world_.bindings()[size_t(f.binding)], at, {&h, 1}, true);
         if (isFinite(h.shown))
             accumulator_.contribute(sched, {f.target, r.weight * h.shown, LightEvent::Surface, &ray, store_.extraOf(ray).share});
         if (ray.counts && isFinite(h.opacity)) addOpacity(ray, h.opacity);
@@ -144,7 +144,7 @@ void MediumEvents::pass(RaySegment& f, Sched& sched) {
     r.goOnAt(geometry::offsetOrigin(p.surface, ray.dir));
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
-    r.media = media_.beyond(world_.bindings_[size_t(f.binding)], ray.media, p.surface.n, ray.dir, ray.dir);
+    r.media = media_.beyond(world_.bindings()[size_t(f.binding)], ray.media, p.surface.n, ray.dir, ray.dir);
     media_.tellLost(r.media, p);
     r.parted = true;
     r.vertex = childVertex(ray.vertex, kSegmentEvent, 1);
@@ -161,7 +161,7 @@ void MediumEvents::happen(std::span<RaySegment> segmentEvents, Sched& sched) {
     const WorldImpl& w = world_;
     const auto crosses = [&](const RaySegment& f) {
         const int medium = f.over ? -1 : f.ray->medium();
-        return medium >= 0 && w.media_[size_t(medium)].homogeneous;
+        return medium >= 0 && w.media()[size_t(medium)].homogeneous;
     };
     numbers_.clear();
     for (const RaySegment& f : segmentEvents) // other lights than those that its lobe sampled
@@ -178,7 +178,7 @@ void MediumEvents::happen(std::span<RaySegment> segmentEvents, Sched& sched) {
             if (!leaks(f))
                 if (const auto c = cross(f, i, u, sched)) crossings.push_back(*c);
         }
-        if (!f.over && f.point && w.bindings_[size_t(f.binding)].overruled(f.ray->media)) pass(f, sched);
+        if (!f.over && f.point && w.bindings()[size_t(f.binding)].overruled(f.ray->media)) pass(f, sched);
     }
     const auto before = [](const Crossing& a, const Crossing& b) { return a.way.medium < b.way.medium; };
     if (!std::is_sorted(crossings.begin(), crossings.end(), before)) std::stable_sort(crossings.begin(), crossings.end(), before);
@@ -192,8 +192,8 @@ void MediumEvents::happen(std::span<RaySegment> segmentEvents, Sched& sched) {
 
 Vec3 MediumEvents::lightDirection(const Medium& m, const PathRay& r, const Vec3& from, float* away) const {
     const WorldImpl& w = world_;
-    if (!rules_.lightsAtRequests || w.settings_.mediumSampling == MediumSampling::Distance) return {};
-    const WorldImpl::LightList& list = w.lightLists_[size_t(w.bindings_[size_t(m.binding)].lightList)];
+    if (!rules_.lightsAtRequests || w.settings().mediumSampling == MediumSampling::Distance) return {};
+    const WorldImpl::LightList& list = w.lightLists()[size_t(w.bindings()[size_t(m.binding)].lightList)];
     const LightChooser& chooser = w.chooserOf(list);
     const std::vector<int>& on = w.sampledOf(list);
     const uint32_t vertex = childVertex(r.vertex, kSegmentEvent, 3);
@@ -205,7 +205,7 @@ Vec3 MediumEvents::lightDirection(const Medium& m, const PathRay& r, const Vec3&
     std::vector<std::pair<Vec3, float>> near;
     for (const auto& [k, chance] : chosen) {
         const int light = on[size_t(k)];
-        const BoundLight& l = w.lights_[size_t(light)];
+        const BoundLight& l = w.lights()[size_t(light)];
         if (!l.placed || (list.ofAll && !list.lights.contains(light))) continue;
         const Vec3 to = l.place - from;
         const double far = length(Vec3d(to));
@@ -221,9 +221,9 @@ Vec3 MediumEvents::lightDirection(const Medium& m, const PathRay& r, const Vec3&
 /// Points of scattering gather light like surfaces, by the phase function.
 void MediumEvents::scatter(std::span<RaySegment> segmentEvents, std::span<const Crossing> crossings, Sched& sched) {
     auto c = batches_.take();
-    const Medium& m = world_.media_[size_t(crossings[0].way.medium)];
+    const Medium& m = world_.media()[size_t(crossings[0].way.medium)];
     c->bound = &m.kernel;
-    c->binding = &world_.bindings_[size_t(m.binding)];
+    c->binding = &world_.bindings()[size_t(m.binding)];
     c->between = true;
     c->points.clear(); // points of the previous batch
     lights_.clear();
@@ -271,8 +271,8 @@ void MediumEvents::placePoints(BatchContext& c, const Medium& m) const {
         p.N = p.surface.N = p.surface.Ng = -r.dir; // surface.n is 0: no sides
         p.I = p.P - r.begin();
         p.E = r.origin;
-        p.shutter = p.surface.time = world_.shadesAtOpen_ ? 0 : r.shutter();
-        world_.tellTime(p);
+        p.shutter = p.surface.time = world_.shadesAtOpen() ? 0 : r.shutter();
+        world_.setTime(p);
         p.ray = &r;
     }
 }

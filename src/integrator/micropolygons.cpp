@@ -54,7 +54,7 @@ MicropolygonCamera::MicropolygonCamera(const scene::Options& o) {
     pixel = float(1 / c.pixelsPerUnit);
 }
 
-Micropolygons::Micropolygons(const WorldImpl& w) : world_(w), camera_(w.frame_->options) { lattices_.resize(w.shapes_.size()); }
+Micropolygons::Micropolygons(const WorldImpl& w) : world_(w), camera_(w.frame().options) { lattices_.resize(w.shapes().size()); }
 
 const Micropolygons::Lattice& Micropolygons::lattice(uint32_t shape) {
     std::unique_ptr<Lattice>& l = lattices_[shape];
@@ -63,7 +63,7 @@ const Micropolygons::Lattice& Micropolygons::lattice(uint32_t shape) {
 }
 
 Micropolygons::Lattice Micropolygons::latticeOf(uint32_t shape) const {
-    const Shape& s = *world_.shapes_[shape];
+    const Shape& s = *world_.shapes()[shape];
     const Shape& base = *baseOf(s);
     Lattice l;
     l.edge = float(geometry::diceEdge(s.attributes()));
@@ -218,7 +218,7 @@ Vec2 Micropolygons::spanOfTriangle(const Lattice& l, const MicropolygonShare& s)
         const geometry::HitRef refs[3] = {{s.key.prim, 0, 0, &corners_.at[0], 0},
                                           {s.key.prim, 1, 0, &corners_.at[1], 0},
                                           {s.key.prim, 0, 1, &corners_.at[2], 0}};
-        world_.shapes_[s.key.shape]->points(refs, geometry::kNeedUV);
+        world_.shapes()[s.key.shape]->points(refs, geometry::kNeedUV);
     }
     const geometry::SurfacePoint& from = corners_.at[first];
     float u[2], v[2]; // along one edge of the cell each
@@ -241,7 +241,7 @@ Vec2 Micropolygons::spanOf(const Lattice& l, const MicropolygonShare& s) {
     if (l.kind == Kind::Surface) return steps;
     geometry::SurfacePoint at[2]; // pieces of a curve share its v
     const geometry::HitRef refs[2] = {{s.key.prim, 0, 0, &at[0], 0}, {s.key.prim, 1, 1, &at[1], 0}};
-    world_.shapes_[s.key.shape]->points(refs, geometry::kNeedUV);
+    world_.shapes()[s.key.shape]->points(refs, geometry::kNeedUV);
     return {steps.x * std::fabs(at[1].u - at[0].u), steps.y * std::fabs(at[1].v - at[0].v)};
 }
 
@@ -285,7 +285,7 @@ const Micropolygons::Partials& Micropolygons::partialsOf(uint32_t shape) {
     std::vector<geometry::SurfacePoint> at(n * n);
     std::vector<geometry::HitRef> run;
     for (int k = 0; k < n * n; ++k) run.push_back({0, double(k % n) / (n - 1), double(k / n) / (n - 1), &at[size_t(k)], 0});
-    world_.shapes_[shape]->points(run, geometry::kNeedPartials);
+    world_.shapes()[shape]->points(run, geometry::kNeedPartials);
     for (int y = 0; y < Partials::kCells; ++y)
         for (int x = 0; x < Partials::kCells; ++x)
             for (int k = 0; k < 4; ++k) {
@@ -306,7 +306,7 @@ void Micropolygons::ofSurfaces(const Lattice& l, std::span<const accel::Hit> hit
     run_.clear();
     for (size_t i = 0; i < hits.size(); ++i)
         if (!tabled(hits[i])) run_.push_back({hits[i].prim, hits[i].b1, hits[i].b2, &surfaces_[i], 0});
-    if (!run_.empty()) world_.shapes_[hits[0].shape]->points(run_, geometry::kNeedPartials | geometry::kNeedUV);
+    if (!run_.empty()) world_.shapes()[hits[0].shape]->points(run_, geometry::kNeedPartials | geometry::kNeedUV);
     for (size_t i = 0; i < hits.size(); ++i) {
         MicropolygonShare s{{hits[i].shape, hits[i].prim, {}, {}, false}, hits[i].b1, hits[i].b2, 1};
         const Seen seen(camera_, P[i], l.edge);
@@ -338,7 +338,7 @@ Micropolygons::Lengths Micropolygons::lengthsOf(uint32_t shape, uint32_t prim) {
     Lengths l{0, 0, prim};
     for (int j = 0; j < 3; ++j)
         for (int i = 0; i < 3; ++i) {
-            const geometry::SurfacePoint point = world_.shapes_[shape]->evaluateHit(prim, i * 0.5, j * 0.5);
+            const geometry::SurfacePoint point = world_.shapes()[shape]->evaluateHit(prim, i * 0.5, j * 0.5);
             p[j][i] = point.P;
             l.prim = point.prim;
         }

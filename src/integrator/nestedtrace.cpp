@@ -70,12 +70,12 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
     if (in.requests.lobes.empty()) return {};
     LobeVertex l = in.requests.lobes.back();
     in.requests.lobes.clear();
-    if (from.bounces + 1 > world_.maxDepth_) return {};
+    if (from.bounces + 1 > world_.maxDepth()) return {};
     uint32_t many = from.asked;
     float chance = 1;
     const bool onlyDistance = s.givesDistance() && s.resultRows.size() < 2;
     if (rules_.roulette && !onlyDistance) {
-        many = std::max<uint32_t>(many, uint32_t(world_.lightTraces_) * (occurrence + 1) * uint32_t(std::max(l.samples, 1)));
+        many = std::max<uint32_t>(many, uint32_t(world_.lightTraces()) * (occurrence + 1) * uint32_t(std::max(l.samples, 1)));
         chance = rouletteOfLight(from.bounces, many);
         const uint32_t vertex = childVertex(from.vertex, kLightPoint + l.site, occurrence * 4096);
         if (chance < 1 && in.store.random(from).one(vertex, kRoulette, 0) >= chance) return {};
@@ -108,7 +108,7 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
         r.weight = f / float(l.samples);
         r.vertex = vertex;
         r.asked = uint16_t(std::min<uint32_t>(many, 0xffff));
-        r.bounces = int16_t(onlyDistance ? world_.maxDepth_ : from.bounces + 1); // a distance query ends at the first hit
+        r.bounces = int16_t(onlyDistance ? world_.maxDepth() : from.bounces + 1); // a distance query ends at the first hit
         ++(l.rays->type == RayType::Diffuse ? r.diffuseBounces : r.specularBounces);
         r.origin = l.bias >= 0 ? start + w * l.bias
                    : leaves    ? geometry::offsetOrigin(*p.lit, w, 0)

@@ -87,7 +87,7 @@ FlippedNormals::Tally* OcclusionCalls::tallyOf(const BatchContext& c, const Site
     if (!t) {
         const auto& files = c.bound->kernel->files();
         const auto& at = s.site->place;
-        t = &world_.turnedAway_.of(
+        t = &world_.turnedAway().of(
             {at.file >= 0 && at.file < int(files.size()) ? files[size_t(at.file)] : "", at.line, at.column},
             s.kind == SiteKind::Trace ? "indirectdiffuse" : s.site->op, *p.shape);
     }
@@ -110,7 +110,7 @@ void OcclusionCalls::noteTurnedAway(const BatchContext& c, const SiteInfo& s, in
     ray.sides = accel::Sides::Both;
     if (p.ray->sample) ray.level = p.ray->sample->level;
     accel::Hit hit;
-    if (!intersector_.intersect(ray, hit) || world_.shapes_[hit.shape].get() != p.shape) FlippedNormals::Tally::set(t.open);
+    if (!intersector_.intersect(ray, hit) || world_.shapes()[hit.shape].get() != p.shape) FlippedNormals::Tally::set(t.open);
 }
 
 void OcclusionCalls::hemisphereRays(const BatchContext& c, const SiteInfo& s, const ShadePoint& p, const Vec3& at,
@@ -188,7 +188,7 @@ void OcclusionCalls::hemisphereRays(const BatchContext& c, const SiteInfo& s, co
 /// Number of rays to send before the rest: all, unless the call allows fewer.
 int OcclusionCalls::fewer(const OcclusionSite& o, const std::function<float(int)>& f, int count, const BatchContext& c) const {
     const bool given = o.least >= 0 && f(o.least) >= 1;
-    if (c.light || !world_.media_.empty() || (o.adaptive >= 0 ? !(f(o.adaptive) > 0) : !given)) return count;
+    if (c.light || !world_.media().empty() || (o.adaptive >= 0 ? !(f(o.adaptive) > 0) : !given)) return count;
     return std::clamp(given ? int(std::min(f(o.least), 4096.f)) : count / 4, 1, count);
 }
 

@@ -14,7 +14,7 @@ Color between0And1(const Color& c) { return {std::clamp(c.x, 0.f, 1.f), std::cla
 
 void Opacities::opacities(std::span<const OpacityQuery> met, std::span<Color> out) {
     BatchContext c;
-    const SurfaceBinding& b = world_.bindings_[size_t(met[0].binding)];
+    const SurfaceBinding& b = world_.bindings()[size_t(met[0].binding)];
     c.bound = met[0].kernel;
     c.binding = &b;
     c.forShadow = true;
@@ -33,14 +33,14 @@ void Opacities::opacities(std::span<const OpacityQuery> met, std::span<Color> ou
         c.bindings.push_back(m.binding);
         ShadePoint& p = c.points.emplace_back();
         p.ray = &r;
-        p.shape = world_.shapes_[m.hit.shape].get();
-        p.surface = world_.accel_->point(m.hit);
+        p.shape = world_.shapes()[m.hit.shape].get();
+        p.surface = world_.accel().point(m.hit);
         p.P = p.surface.displaced && !b.moveS ? p.surface.displacedP : p.surface.P; // a shader that moves P moves it here, too
         p.N = p.surface.N;
         p.I = p.P - r.origin;
         p.E = r.origin;
         p.shutter = m.ray->time;
-        world_.tellTime(p);
+        world_.setTime(p);
         shading::setFootprint(p, r.footprint, r.dir, length(p.I), 1);
     }
     std::vector<shading::InstanceView> views(met.size(), b.surface->view());

@@ -13,7 +13,7 @@ struct PhotonEmission::Impl {
         PhotonJob j;
         j.plan = plan.get();
         j.met = met.data();
-        j.seed = world->settings_.seed;
+        j.seed = world->settings().seed;
         j.pass = pass;
         j.caustics = use.caustics;
         j.learns = use.learns;
@@ -44,8 +44,8 @@ void PhotonEmission::learn(std::span<const StoredPhoton> stored, uint32_t pass, 
     impl_->plan->learn(stored, impl_->job(pass, emitted), emitted);
 }
 void PhotonEmission::tellLights() const {
-    impl_->world->photons_->lightsOfPasses = impl_->plan->emits();
-    impl_->world->photons_->widthOfPasses = impl_->use.width;
+    impl_->world->photons()->lightsOfPasses = impl_->plan->emits();
+    impl_->world->photons()->widthOfPasses = impl_->use.width;
 }
 
 struct PhotonEmission::Thread::Impl {

@@ -47,7 +47,7 @@ void PhotonFlight::takeModels(const BatchContext& c, bool all) {
         if (model == PhotonModel::Shader || !(v_.vertices[i / kBlock].points >> i % kBlock & 1)) continue;
         ModelLobe lobes[kModelLobes];
         const int count =
-            PhotonStage::lobesOfModel(model, c.points[i], world_.bindings_[size_t(c.bindings[i])].attributes->color, lobes);
+            PhotonStage::lobesOfModel(model, c.points[i], world_.bindings()[size_t(c.bindings[i])].attributes->color, lobes);
         for (int k = 0; k < count; ++k) {
             LobeBlock& l = modelSite(first, k, lobes[k]).lobes[i / kBlock];
             const size_t lane = i % kBlock;
@@ -123,7 +123,7 @@ void PhotonFlight::mark(BatchContext& c) {
 void PhotonFlight::limitDepths(const BatchContext& c) {
     for (size_t b = 0; b < v_.blocks; ++b) {
         if (photons_.photonTrace()->job->caustics) limitDepth(b, c);
-        if (!world_.settings_.indirect) v_.vertices[b].deep[1] = ~Lanes(0);
+        if (!world_.settings().indirect) v_.vertices[b].deep[1] = ~Lanes(0);
     }
 }
 
@@ -134,7 +134,7 @@ void PhotonFlight::limitDepth(size_t b, const BatchContext& c) {
         const size_t point = std::min(b * kBlock + i, v_.points - 1);
         for (const bool diffuse : {false, true}) {
             const bool deep = c.rays[point].scattered >= limits::kPathDepth ||
-                              !depthsBehind(c.rays[point], world_.bindings_[size_t(c.bindings[point])], diffuse);
+                              !depthsBehind(c.rays[point], world_.bindings()[size_t(c.bindings[point])], diffuse);
             v.deep[diffuse] |= Lanes(deep) << i;
         }
     }
@@ -191,7 +191,7 @@ void PhotonFlight::rest(const BatchContext& c) {
     for (size_t k = 0; k < v_.count; ++k)
         for (size_t b = 0; b < v_.blocks; ++b) asked |= v_.sites[k].lobes[b].asked;
     if (!asked) return;
-    for (size_t point = 0; world_.moves_ && point < v_.points; ++point)
+    for (size_t point = 0; world_.moves() && point < v_.points; ++point)
         if (const ShadePoint& p = c.points[point]; p.shape) t.fastest = std::max(t.fastest, length(p.shape->velocity(p.surface)));
     for (size_t point = 0; point < v_.points && !c.between; ++point) restAt(point, c);
 }
@@ -286,10 +286,10 @@ bool PhotonFlight::extendAt(size_t b, size_t i, BatchContext& c) {
 /// Survival probability of a photon; 0: it ends.
 float PhotonFlight::survival(const PathRay& from, const Color& request, const Color& weight, float dice) const {
     const int bounces = from.bounces + 1;
-    if (world_.settings_.localRoulette) return std::max(rouletteLocal(bounces, request, dice), 0.f);
+    if (world_.settings().localRoulette) return std::max(rouletteLocal(bounces, request, dice), 0.f);
     if (bounces <= 3) return 1;
     // A light that traces sends rays at every vertex: throughput ends this tree of rays.
-    if (world_.lightTraces_ > 0) return std::max(rouletteLocal(bounces, absolute(weight), dice), 0.f);
+    if (world_.lightTraces() > 0) return std::max(rouletteLocal(bounces, absolute(weight), dice), 0.f);
     return std::max(rouletteOfPath(weight, [&] { return dice; }), 0.f);
 }
 
@@ -330,7 +330,7 @@ void PhotonFlight::keep(size_t b, const BatchContext& c) {
         const bool sampled = s.lightsAt(point) && !((v_.next.single | l.elsewhere) >> i & 1);
         r.binding[i] = sampled || !c.between ? c.bindings[point] : -1;
         const auto depths = l.boundless >> i & 1 ? PhotonDepths::of(from)
-                                                 : depthsBehind(from, world_.bindings_[size_t(c.bindings[point])], s.diffuse);
+                                                 : depthsBehind(from, world_.bindings()[size_t(c.bindings[point])], s.diffuse);
         PathRay to = from;
         if (depths) depths->to(to);
         const uint32_t trail = gathered_.mirrors(s, point, c) ? from.trail : uint32_t(shading::kTrailSpread);

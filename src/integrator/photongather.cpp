@@ -18,13 +18,13 @@ PhotonGather::PhotonGather(const StageSet& s, const VertexStages& v)
 
 void PhotonGather::mark(BatchContext& c) {
     gathers_.clear();
-    if (!world_.photons_ || !world_.photons_->hasPasses()) return;
+    if (!world_.photons() || !world_.photons()->hasPasses()) return;
     for (size_t i = 0; i < v_.points; ++i) {
         if (!stage_.passOf(c.rays[i])) continue;
         gathers_.resize(v_.blocks);
         gathers_[i / kBlock] |= 1u << i % kBlock;
     }
-    const float below = world_.photons_->widthOfPasses;
+    const float below = world_.photons()->widthOfPasses;
     for (size_t k = 0; k < v_.count && !gathers_.empty(); ++k)
         for (size_t b = 0; b < v_.blocks; ++b) {
             const Site& s = v_.sites[k];
@@ -65,7 +65,7 @@ bool PhotonGather::seesAll(const Site& s, size_t point, const BatchContext& c) c
     const float reach = s.options.empty() ? 1e38f : s.options[point].maxDistance;
     return !(s.lobes[point / kBlock].elsewhere >> point % kBlock & 1) && !set.only && !(reach < 1e37f) &&
            set.mode == shading::HitMode::Default && set.sides == accel::Sides::Front &&
-           world_.bindings_[size_t(c.bindings[point])].photons.intersectsBoth;
+           world_.bindings()[size_t(c.bindings[point])].photons.intersectsBoth;
 }
 
 /// Whether a lobe receives light from all directions of its point, so that photons can be gathered for it. Surfaces only.
@@ -82,7 +82,7 @@ bool PhotonGather::mirrors(const Site& s, size_t point, const BatchContext& c) c
 }
 
 Lanes PhotonGather::bring(const LobeBlock& l, const BoundLight& light) const {
-    return l.left && world_.photons_->lightsOfPasses[size_t(&light - world_.lights_.data())] ? l.left : 0;
+    return l.left && world_.photons()->lightsOfPasses[size_t(&light - world_.lights().data())] ? l.left : 0;
 }
 
 uint8_t PhotonGather::trailBehind(const Site& s, size_t point, const BatchContext& c) const {

@@ -27,7 +27,7 @@ public:
     /// A light that emits. Camera space.
     struct Light {
         const BoundLight* light = nullptr;
-        int number = -1;             ///< in WorldImpl::lights_
+        int number = -1;             ///< in WorldImpl::lights()
         double power = 0;            ///< luminance, approximate
         double share = 0, until = 0; ///< fraction of the photons; cumulative sum including this light
         Vec3 place;                  ///< LightKind::Point
@@ -91,7 +91,7 @@ struct PhotonTrace {
     uint32_t first = 0;       ///< photon number for PathSample::path 0
     std::vector<Color> power; ///< by path: power for throughput 1, in units of job->scale
     struct From {
-        int light = -1; ///< index in WorldImpl::lights_
+        int light = -1; ///< index in WorldImpl::lights()
         float kept = 1; ///< EmissionStart::kept
     };
     std::vector<From> from; ///< by path

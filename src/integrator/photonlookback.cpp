@@ -76,7 +76,7 @@ void PhotonFlight::shadeBack(BatchContext& c, const BatchContext& from) {
 bool PhotonFlight::isLit(const Site& s, size_t point, const BatchContext& c) const {
     const PathRay& ray = c.rays[point];
     if (ray.bounces > 0 || !(s.lobes[point / kBlock].lights >> point % kBlock & 1)) return true;
-    return world_.bindings_[size_t(c.bindings[point])].lights.contains(
+    return world_.bindings()[size_t(c.bindings[point])].lights.contains(
         photons_.photonTrace()->from[size_t(ray.sample->path)].light);
 }
 
@@ -114,7 +114,7 @@ Lanes PhotonFlight::sumBack(size_t b, Lanes turned, const BatchContext& seen, co
         const size_t point = b * kBlock + size_t(i);
         const PathRay& ray = c.rays[point];
         kept[i] = ray.bounces == 0 ? t.from[size_t(ray.sample->path)].kept : 1;
-        energy[i] = energyScale(albedo[i], transparency_.clearAt(seen, int(point)), world_.bindings_[size_t(c.bindings[point])]);
+        energy[i] = energyScale(albedo[i], transparency_.clearAt(seen, int(point)), world_.bindings()[size_t(c.bindings[point])]);
         for (int q = 0; q < 3; ++q) w[q][i] = -ray.dir[q];
     }
     Lanes reached = 0;
@@ -166,7 +166,7 @@ void PhotonFlight::densityBack(size_t b, Lanes turned, const BatchContext& c, fl
 /// Reflected plus transmitted light must not exceed incident light.
 float PhotonFlight::energyScale(const Color& reflected, const Color& clear, const SurfaceBinding& of) const {
     float scale = 1;
-    for (int k = 0; k < 3 && !world_.settings_.unbiased; ++k)
+    for (int k = 0; k < 3 && !world_.settings().unbiased; ++k)
         if (reflected[k] + clear[k] > 1 && reflected[k] > 0) scale = std::min(scale, (1 - clear[k]) / reflected[k]);
     if (scale < 0.999f) selection_.tellScaled(of, maxComponent(reflected) > 1);
     return scale;

@@ -56,7 +56,7 @@ void sayNoCaustics(const SurfaceBinding& b, Diagnostics& d) {
 
 PhotonModel PhotonStage::modelAt(const BatchContext& c, size_t point, bool all) const {
     const bool models = photonTrace_->job->models;
-    const PhotonModel m = models ? world_.bindings_[size_t(c.bindings[point])].photons.model : PhotonModel::Shader;
+    const PhotonModel m = models ? world_.bindings()[size_t(c.bindings[point])].photons.model : PhotonModel::Shader;
     return m == PhotonModel::Shader && all ? PhotonModel::Matte : m;
 }
 
@@ -85,7 +85,7 @@ int PhotonStage::lobesOfModel(PhotonModel model, const ShadePoint& p, const Colo
 void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
     const size_t n = c.points.size();
     for (size_t i = 0; i < n; ++i) {
-        const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];
+        const SurfaceBinding& b = world_.bindings()[size_t(c.bindings[i])];
         if (photonTrace_->job->learns) continue;
         if (photonTrace_->job->caustics) sayNoCaustics(b, diagnostics_);
         else if (b.photons.model == PhotonModel::Shader)
@@ -101,7 +101,7 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
     c.clear.assign(n, Color(0));
     c.passes.assign(n, 1.f);
     for (size_t i = 0; i < n; ++i) {
-        const SurfaceBinding& b = world_.bindings_[size_t(c.bindings[i])];
+        const SurfaceBinding& b = world_.bindings()[size_t(c.bindings[i])];
         const Color o = b.attributes->opacity;
         c.clear[i] = b.photons.model == PhotonModel::Transparent
                          ? Color(1)
@@ -111,14 +111,14 @@ void PhotonStage::photonsByModel(BatchContext& c, Sched& sched) {
     vertexLight_.runModels(c, sched);
     for (size_t i = 0; i < n; ++i)
         if (const Color clear = transparency_.goesOn(c, int(i)); maxComponent(clear) > 0 && c.passes[i] > 0)
-            transparency_.continueBehind(world_.bindings_[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear,
+            transparency_.continueBehind(world_.bindings()[size_t(c.bindings[i])], c.rays[i], c.targets[i], c.points[i], clear,
                                          c.passes[i], 0, sched);
 }
 
 const photonmap::PhotonMap* PhotonStage::globalMapOf(int binding) {
     const auto [at, fresh] = globalMaps_.try_emplace(binding, nullptr);
-    const PhotonBinding& b = world_.bindings_[size_t(binding)].photons;
-    if (fresh && !b.globalMap.empty()) at->second = world_.photons_->find(b.globalMap, {});
+    const PhotonBinding& b = world_.bindings()[size_t(binding)].photons;
+    if (fresh && !b.globalMap.empty()) at->second = world_.photons()->find(b.globalMap, {});
     return at->second;
 }
 
@@ -132,7 +132,7 @@ void PhotonStage::takeGlobalMaps(BatchContext& c, Sched& sched) {
             const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
             const Color light =
                 map->radiance({p.surface.displaced ? p.surface.displacedP : p.surface.P, dot(n, r.dir) > 0 ? -n : n,
-                               world_.bindings_[size_t(c.bindings[i])].photons.estimator, 0});
+                               world_.bindings()[size_t(c.bindings[i])].photons.estimator, 0});
             shading_.tellAsker(c, int(i), Color(1), sched);
             accumulator_.contribute(sched, {c.targets[i], r.weight * light, LightEvent::Photons, &r, store_.extraOf(r).share,
                                             nullptr, paths_.atPhotons(r.path)});
@@ -148,8 +148,8 @@ void PhotonStage::takeGlobalMaps(BatchContext& c, Sched& sched) {
 /// The volumes at the origin of a photon; null: none.
 const shading::Media* PhotonStage::aboutLight(const EmissionPlan::Light& l, const EmissionStart& s) {
     const bool placed = l.light->photons || l.light->kind == LightKind::Point || l.light->kind == LightKind::Area;
-    if (world_.media_.empty() || !placed) return nullptr;
-    return media_.kept(mediaAbout(world_, s.origin, world_.shadesAtOpen_ ? 0 : s.drawn.time));
+    if (world_.media().empty() || !placed) return nullptr;
+    return media_.kept(mediaAbout(world_, s.origin, world_.shadesAtOpen() ? 0 : s.drawn.time));
 }
 
 void PhotonStage::tilt(BatchContext& c) {

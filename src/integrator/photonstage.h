@@ -34,11 +34,11 @@ public:
     PhotonTrace& begin(); ///< switches the pipeline to photons
     /// The photons of the pass that a ray's sample uses; null: none.
     const photonmap::PhotonGrid* passOf(const PathRay& r) const {
-        return r.sample && !photonTrace_ ? world_.photons_->pass(r.sample->sample) : nullptr;
+        return r.sample && !photonTrace_ ? world_.photons()->pass(r.sample->sample) : nullptr;
     }
     /// Whether light of this emitter, which a ray hit, is already in the photons of its sample.
     bool bringsPhotons(const PathRay& r, int light) const {
-        return (r.trail & shading::kTrailMirrored) && passOf(r) && world_.photons_->lightsOfPasses[size_t(light)];
+        return (r.trail & shading::kTrailMirrored) && passOf(r) && world_.photons()->lightsOfPasses[size_t(light)];
     }
     /// The volumes at the origin of a photon; null: none.
     const shading::Media* aboutLight(const EmissionPlan::Light&, const struct EmissionStart&);

@@ -102,7 +102,7 @@ Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
       ambient(set), subsurface(set), photons(set), lightOutputs(set), depthRays(set), lastSkies(set) {
     const auto event = [](const Medium& m) { return m.homogeneous || m.priority != 0; };
     const WorldImpl& world = context.world;
-    if (std::any_of(world.media_.begin(), world.media_.end(), event)) segmentEvents.happens(mediumEvents);
+    if (std::any_of(world.media().begin(), world.media().end(), event)) segmentEvents.happens(mediumEvents);
 }
 
 Pipeline::Pipeline(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : parts_(std::make_unique<Parts>(std::move(w), d)) {}
@@ -151,8 +151,8 @@ bool Pipeline::trace(std::span<const CameraRay> rays, std::span<SampleResult> ou
 /// Rays of orthographic cameras, lenses and stereo pairs do not start at the eye.
 const shading::Media* Pipeline::mediaAtStart(const CameraRay& c) {
     const WorldImpl& w = world();
-    if (c.origin == Vec3(0, 0, 0)) return w.eye_.count ? &w.eye_ : nullptr;
-    return parts_->media.kept(mediaAbout(w, c.origin, w.shadesAtOpen_ ? 0 : c.shutter));
+    if (c.origin == Vec3(0, 0, 0)) return w.eye().count ? &w.eye() : nullptr;
+    return parts_->media.kept(mediaAbout(w, c.origin, w.shadesAtOpen() ? 0 : c.shutter));
 }
 
 void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
@@ -167,13 +167,13 @@ void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
     r.sample = &sample;
     r.footprint = {c.width, c.spread};
     r.setStart(c.start);
-    if (!w.media_.empty() && !c.grid) r.media = mediaAtStart(c);
+    if (!w.media().empty() && !c.grid) r.media = mediaAtStart(c);
     if (c.grid && c.grid->micropolygon) {
         // Sign-extends, as for pixels
         const auto half = [&](int shift) { return int(c.grid->micropolygon >> shift & 0x3fffffff) - (1 << 29); };
         sample.numbers = SampleNumbers(Sampler(parts_->context.seed, half(0), half(32)), c.sample);
     }
-    if (w.fades_) sample.level = parts_->store.levelOf(c);
+    if (w.fades()) sample.level = parts_->store.levelOf(c);
     r.counts = true;
 }
 
@@ -220,9 +220,9 @@ bool Pipeline::traceAll(std::span<const CameraRay> rays, std::span<SampleResult>
     Sched& sched = scheduler();
     sched.restart(parts_->context.stop);
     size_t aovs = 0;
-    for (int width : w.outputWidths_) aovs += size_t(width);
+    for (int width : w.widthsOfOutputs()) aovs += size_t(width);
     sums.begin(rays.size());
-    sums.nowhere = w.lightOutputs_.empty() ? shading::kNoAccumulator : sched.newRoot();
+    sums.nowhere = w.lightOutputs().empty() ? shading::kNoAccumulator : sched.newRoot();
     parts_->intersector.begin(std::any_of(rays.begin(), rays.end(), [](const CameraRay& c) { return c.grid != nullptr; }));
     const scene::LightPaths* const paths = parts_->paths.automaton;
     std::vector<AccumulatorId> roots(rays.size());
@@ -231,7 +231,7 @@ bool Pipeline::traceAll(std::span<const CameraRay> rays, std::span<SampleResult>
         out[i].aovs.assign(aovs, 0.f);
         sums.results[i] = &out[i];
         roots[i] = sched.newRoot();
-        for (size_t k = 0; k < w.lightOutputs_.size(); ++k) sums.lightTargets.push_back(sched.newRoot());
+        for (size_t k = 0; k < w.lightOutputs().size(); ++k) sums.lightTargets.push_back(sched.newRoot());
         for (int k = 0; paths && k < paths->parts(); ++k) sums.partTargets.push_back(sched.newRoot());
         PathRay& r = sched.spawn(0, roots[i]).payload;
         beginRay(rays[i], i, r);
@@ -251,7 +251,7 @@ void Pipeline::takeResults(std::span<SampleResult> out, std::span<const Accumula
     const WorldImpl& w = world();
     const Accumulator& sums = parts_->accumulator;
     const scene::LightPaths* const paths = parts_->paths.automaton;
-    const float clampAt = w.settings_.sampleClamp;
+    const float clampAt = w.settings().sampleClamp;
     for (size_t i = 0; i < roots.size(); ++i) {
         Color c = sched_->value(roots[i]).radiance;
         float m = maxComponent(c);
@@ -261,10 +261,10 @@ void Pipeline::takeResults(std::span<SampleResult> out, std::span<const Accumula
             const Color part = sched_->value(sums.partTargets[i * size_t(paths->parts()) + size_t(k)]).radiance;
             out[i].parts.push_back(clampAt > 0 && m > clampAt ? part * (clampAt / m) : part);
         }
-        for (size_t k = 0; k < w.lightOutputs_.size(); ++k) {
-            const LightOutputPlace& to = w.lightOutputs_[k];
+        for (size_t k = 0; k < w.lightOutputs().size(); ++k) {
+            const LightOutputPlace& to = w.lightOutputs()[k];
             if (to.first < 0) continue;
-            const Color light = sched_->value(sums.lightTargets[i * w.lightOutputs_.size() + k]).radiance;
+            const Color light = sched_->value(sums.lightTargets[i * w.lightOutputs().size() + k]).radiance;
             if (to.size == 1) out[i].aovs[size_t(to.first)] += light.x + light.y + light.z;
             else
                 for (int n = 0; n < 3; ++n) out[i].aovs[size_t(to.first + n)] += light[n];
@@ -283,7 +283,7 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
     for (size_t i = 0; i < slice.size(); ++i) {
         if (hits[i].valid() && p.context.seen) blocked(slice[i].payload, hits[i]);
         if (!hits[i].valid()) missed.push_back(&slice[i]);
-        else if (p.guide.bringsNothing(slice[i].payload, world().bindingOf_[hits[i].shape])) p.store.freeExtra(slice[i].payload);
+        else if (p.guide.bringsNothing(slice[i].payload, world().bindingOf()[hits[i].shape])) p.store.freeExtra(slice[i].payload);
         else p.queues.add(slice[i], hits[i], sched);
     }
     p.segmentEvents.run(missed, sched);
@@ -297,7 +297,7 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
 
 /// Notes a ray that may have seen a sky and met an opaque surface instead (Context::seen).
 void Pipeline::blocked(const PathRay& r, const accel::Hit& h) {
-    const SurfaceBinding& b = world().bindings_[size_t(world().bindingOf_[h.shape])];
+    const SurfaceBinding& b = world().bindings()[size_t(world().bindingOf()[h.shape])];
     if (r.lobePdf >= 0 && b.opacityFor(r.kind->set.mode).opaque())
         parts_->context.seen->push_back({{r.lobeOrigin, r.dir}, SeenSample::kBlocked});
 }
@@ -323,14 +323,14 @@ void Pipeline::shadeHits(size_t group, Sched& sched) {
     if (c->rays.empty()) return p.batches.giveBack(std::move(c));
     p.emitted.hits(*c, sched);
     p.store.keepIndirect(*c);
-    if (w.globalMaps_) p.photons.takeGlobalMaps(*c, sched);
+    if (w.globalMaps()) p.photons.takeGlobalMaps(*c, sched);
     if (c->rays.empty()) return p.batches.giveBack(std::move(c));
     if (p.shading.vanish(*c, sched)) return p.batches.finish(std::move(c), sched);
     if (p.photons.photonTrace()) p.photons.tilt(*c);
     c->again = p.photons.photonTrace() && p.photons.photonTrace()->job->learns;
     const bool same = std::all_of(c->bindings.begin(), c->bindings.end(), [&](int b) { return b == c->bindings[0]; });
-    c->binding = &w.bindings_[size_t(c->bindings[0])];
-    c->bound = group >= size_t(w.groups_)             ? &w.primitiveHit_
+    c->binding = &w.bindings()[size_t(c->bindings[0])];
+    c->bound = group >= size_t(w.groups())            ? &w.primitiveHit()
                : same && !c->binding->usesObjectSpace ? &c->binding->surfaceS
                                                       : &c->binding->surfaceV;
     p.shading.shade(c, sched);

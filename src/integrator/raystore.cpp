@@ -19,7 +19,7 @@ const uint8_t* RayStore::shapesOf(int32_t subset, int32_t exclude, const scene::
     if (!fresh) return known->second;
     std::string wanted = rsl::internedString(subset);
     if (wanted.empty() && from) wanted = attributeText(*from, "grouping:tracesubset");
-    return known->second = world_.subsets_.find(world_, wanted, rsl::internedString(exclude));
+    return known->second = world_.subsets().find(world_, wanted, rsl::internedString(exclude));
 }
 
 RaySet RayStore::raySetOf(const SiteInfo& s, const std::function<float(int)>& f, const geometry::Shape* from, RayType& type,
@@ -37,7 +37,7 @@ RaySet RayStore::raySetOf(const SiteInfo& s, const std::function<float(int)>& f,
     if (r.mode >= 0)
         if (const auto mode = modeOf(word(r.mode))) set.mode = *mode;
     const int32_t subset = r.subset >= 0 ? id(r.subset) : r.subsetId, exclude = r.exclude >= 0 ? id(r.exclude) : r.excludeId;
-    const bool ofShape = subset == 0 && from && world_.traceSubsets_;
+    const bool ofShape = subset == 0 && from && world_.traceSubsets();
     if (r.subset >= 0 || r.exclude >= 0 || ofShape) set.only = shapesOf(subset, exclude, ofShape ? &from->attributes() : nullptr);
     return set;
 }

@@ -76,7 +76,7 @@ void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, con
             return Vec3(f(s.rows[size_t(arg)]), f(s.rows[size_t(arg)] + 1), f(s.rows[size_t(arg)] + 2));
         };
         media_.shadowsInMedia(std::span(shadows_.queue).subspan(had), v(0), v(1), p.P, &p.surface,
-                              c.bindings.empty() ? nullptr : &world_.bindings_[size_t(c.bindings[size_t(point)])]);
+                              c.bindings.empty() ? nullptr : &world_.bindings()[size_t(c.bindings[size_t(point)])]);
     } else {
         if (s.occlusion->records.call) {
             RayKind kind = kShadowKind;
@@ -106,10 +106,10 @@ void Requests::requestShadows(BatchContext& c, const SiteInfo& s, int point, con
 /// Which surfaces the rays of a trace() hit.
 template <class Row> const RayKind* Requests::raysOfTrace(const SiteInfo& s, const Row& f, const ShadePoint& p) {
     const bool lights = s.rowLights >= 0 && f(s.rowLights) != 0, indirectOnly = s.trace->apart;
-    if (s.rays->fixed && !(world_.traceSubsets_ && s.rays->subsetText.empty())) // the most frequent case, many times a sample
+    if (s.rays->fixed && !(world_.traceSubsets() && s.rays->subsetText.empty())) // the most frequent case, many times a sample
         return store_.kindOf(
-            {s.rays->rays, true, s.rays->set, s.label, s.trace->hemisphere && world_.globalMaps_, lights, indirectOnly});
-    RayKind kind{RayType::Diffuse, true, {}, 0, s.trace->hemisphere && world_.globalMaps_, lights, indirectOnly};
+            {s.rays->rays, true, s.rays->set, s.label, s.trace->hemisphere && world_.globalMaps(), lights, indirectOnly});
+    RayKind kind{RayType::Diffuse, true, {}, 0, s.trace->hemisphere && world_.globalMaps(), lights, indirectOnly};
     kind.set = store_.raySetOf(s, f, p.shape, kind.type, kind.label);
     return store_.kindOf(kind);
 }
@@ -237,7 +237,7 @@ Color Requests::mapTowards(const TraceSite& t, const Vec3& w, float spread) cons
     float v[3] = {};
     texture::LookupOptions colours;
     colours.asLight = true;
-    texture::environment(t.map, world_.textures_->latLong(), 0, 3, at, b.t * spread, b.u * spread, colours, v);
+    texture::environment(t.map, world_.textures().latLong(), 0, 3, at, b.t * spread, b.u * spread, colours, v);
     return {v[0], v[1], v[2]};
 }
 
@@ -260,7 +260,7 @@ void Requests::requestPairs(BatchContext& c, std::vector<AskedLobe>* asked, Sche
                 continue;
             }
             if (weight == Color(0) || c.rays[size_t(point)].quiet) continue;
-            if (world_.bindings_[c.bindings[point]].matte && c.rays[point].camera()) continue;
+            if (world_.bindings()[c.bindings[point]].matte && c.rays[point].camera()) continue;
             const float* args = pair + size_t(3) * e.lanes;
             if (photons_.photonTrace() && (s.kind == SiteKind::LightVisibility || asksShadows(s.kind)))
                 continue; // light seen by photons is discarded

@@ -27,8 +27,8 @@ RowShading::RowShading(const StageSet& s)
       cameraOutputs_(s.cameraOutputs), segmentEvents_(s.segmentEvents), gathers_(s.gathers), inputs_(s.inputs), paths_(s.paths),
       photons_(s.photons), store_(s.store), requests_(s.requests), shadows_(s.shadows), surfaces_(s.surfaces),
       shading_(s.shading), transparency_(s.transparency) {
-    takes_.assign(!world_.moves_ && world_.media_.empty() ? size_t(world_.groups_) : 0, 1);
-    for (const SurfaceBinding& b : world_.bindings_)
+    takes_.assign(!world_.moves() && world_.media().empty() ? size_t(world_.groups()) : 0, 1);
+    for (const SurfaceBinding& b : world_.bindings())
         if (size_t(b.group) < takes_.size()) takes_[size_t(b.group)] &= takes(b);
 }
 
@@ -75,7 +75,7 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
     count(c);
     requestOthers(c, sched);
     shadows_.flush(sched);
-    const bool asks = !world_.wanted_.empty() || world_.settings_.firstSeen;
+    const bool asks = !world_.wanted().empty() || world_.settings().firstSeen;
     const bool outputs = asks && std::any_of(c.rays.begin(), c.rays.end(), [](auto& r) { return r.counts; });
     if (c.opaque && !outputs) {
         finish(c, sched);
@@ -94,19 +94,19 @@ void RowShading::run(BatchContext& c) {
     c.ways.resize(8 * n);
     for (size_t i = 0; i < n; ++i) {
         const PathRay& r = c.rays[i];
-        c.shapes[i] = world_.shapes_[c.hits[i].shape].get();
+        c.shapes[i] = world_.shapes()[c.hits[i].shape].get();
         const Vec3 begin = r.begin(), I = c.surfaces[i].P - begin;
         for (int q = 0; q < 3; ++q) {
             c.ways[size_t(q) * n + i] = I[q];
             c.ways[size_t(3 + q) * n + i] = r.camera() ? 0 : begin[q];
         }
-        if (!world_.needs_.footprints) continue;
-        const float rate = r.camera() ? world_.bindings_[size_t(c.bindings[i])].shadingRate : 1;
+        if (!world_.needs().footprints) continue;
+        const float rate = r.camera() ? world_.bindings()[size_t(c.bindings[i])].shadingRate : 1;
         const Vec2 size = stepsAt(r, c.surfaces[i], rate);
         c.ways[6 * n + i] = size.x;
         c.ways[7 * n + i] = size.y;
     }
-    c.binding = &world_.bindings_[size_t(c.bindings[0])];
+    c.binding = &world_.bindings()[size_t(c.bindings[0])];
     const bool same = std::all_of(c.bindings.begin(), c.bindings.end(), [&](int b) { return b == c.bindings[0]; });
     c.bound = same && !c.binding->usesObjectSpace ? &c.binding->surfaceS : &c.binding->surfaceV;
     inputs_.viewsOf(c);
@@ -151,7 +151,7 @@ void RowShading::finish(BatchContext& c, Sched& sched) {
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& ray = c.rays[i];
         const Color shown = ci >= 0 ? b.color(ci, int(i)) : Color(0);
-        const ShaderInstance* of = world_.bindings_[size_t(c.bindings[i])].surface.get();
+        const ShaderInstance* of = world_.bindings()[size_t(c.bindings[i])].surface.get();
         if (!isFinite(shown)) accumulator_.notFinite(&ray, "Ci", of);
         else if (!(shown == Color(0)))
             accumulator_.contribute(sched, {c.targets[i], ray.weight * shown, LightEvent::Surface, &ray,

@@ -40,7 +40,7 @@ struct Counters {
     int depthMax = 0;
     size_t peakFrameBytes = 0;         ///< largest size of suspended kernel frames at one time, over all threads
     size_t threadBytes = 0;            ///< most memory of rays, points, columns and frames of one thread
-    std::vector<MediumSegments> media; ///< by WorldImpl::media_; may be shorter
+    std::vector<MediumSegments> media; ///< by WorldImpl::media(); may be shorter
     void operator+=(const Counters&);
 };
 

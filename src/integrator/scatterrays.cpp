@@ -23,10 +23,10 @@ ScatterRays::ScatterRays(const StageSet& s, const VertexStages& v)
     : VertexStage(s, v), accumulator_(s.accumulator), guided_(v.guide), flight_(v.flight), gathered_(v.gather), single_(v.single),
       media_(s.media), store_(s.store), subsurface_(s.subsurface), surfaces_(s.surfaces) {
     if (rules_.roulette) playsRoulette();
-    endsTrees_ = !world_.settings_.localRoulette && world_.lightTraces_ > 0;
+    endsTrees_ = !world_.settings().localRoulette && world_.lightTraces() > 0;
 }
 
-void ScatterRays::playsRoulette() { roulette_ = world_.settings_.localRoulette ? Roulette::Local : Roulette::Throughput; }
+void ScatterRays::playsRoulette() { roulette_ = world_.settings().localRoulette ? Roulette::Local : Roulette::Throughput; }
 
 void ScatterRays::run(BatchContext& c, Sched& sched) {
     v_.turn = 0;
@@ -297,7 +297,7 @@ void ScatterRays::keepLobes(size_t b, BatchContext& c) {
             const Vec3 w(v_.next.direction[0][i], v_.next.direction[1][i], v_.next.direction[2][i]);
             r.path[i] += v_.pathOf(s, v_.next.single >> i & 1, point, w, c) - uint32_t(path);
         }
-        if (!world_.media_.empty() && !c.between) {
+        if (!world_.media().empty() && !c.between) {
             const Vec3 w(v_.next.direction[0][i], v_.next.direction[1][i], v_.next.direction[2][i]);
             const auto media = reinterpret_cast<uintptr_t>(media_.towards(c, int(point), w));
             r.media[0][i] = uint32_t(media), r.media[1][i] = uint32_t(uint64_t(media) >> 32);

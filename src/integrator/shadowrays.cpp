@@ -74,7 +74,7 @@ ShadowSegment segmentBetween(const Vec3& a, const Vec3& b, const Vec3& at, const
 bool ShadowRays::intersectsOnlyOpaque(const ShadowRay& r) const {
     if (r.hemisphere >= 0 && occlusion_.hemispheres[size_t(r.hemisphere)].fade.fades())
         return false; // the distance of the surfaces matters
-    return !world_.mediaOverrule_ && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
+    return !world_.mediaOverrule() && !r.kind->set.only && r.kind->set.mode == shading::HitMode::Default;
 }
 
 /// Sets 0 for rays that hit a surface known to be opaque, and 1 for the others.
@@ -85,7 +85,7 @@ void ShadowRays::blockedByOpaque(std::span<const ShadowRay> rays, std::span<Colo
         out[i] = Color(1);
         if (!intersectsOnlyOpaque(rays[i])) continue;
         rays_.push_back(rayOf(rays[i]));
-        rays_.back().only = world_.byOpacity_.opaque.data();
+        rays_.back().only = world_.byOpacity().opaque.data();
         of.push_back(i);
     }
     blocked_.resize(of.size());
@@ -122,7 +122,7 @@ public:
           counts_(stage.paths_.automaton && stage.paths_.automaton->countsStraight()),
           fading_(std::any_of(rays.begin(), rays.end(), [&](const ShadowRay& r) { return fades(r); })),
           taken_(fading_ ? rays.size() : 0, Color(0)), straights_(counts_ ? rays.size() : 0, 0),
-          differs_(stage.world_.shadowVisibility_.opacity ? rays.size() : 0, 0) {}
+          differs_(stage.world_.shadowVisibility().opacity ? rays.size() : 0, 0) {}
     bool fading() const { return fading_; }
     void run();
 
@@ -149,7 +149,7 @@ private:
     std::span<const ShadowRay> rays_;
     std::span<Color> out_;
     const bool counts_, fading_;
-    bool few_ = false;                ///< ways_ and hits_ use the numbers of WorldImpl::byOpacity_.few
+    bool few_ = false;                ///< ways_ and hits_ use the numbers of WorldImpl::byOpacity().few
     std::vector<Color> taken_;        ///< occlusion by distant surfaces that count in part
     std::vector<uint16_t> straights_; ///< ShadowRays::straights_; a member of its own because shaders on the way may send rays
     std::vector<uint8_t> differs_;    ///< ShadowRays::differs_; likewise
@@ -171,19 +171,19 @@ void ShadowRays::Passing::takes(size_t i, const Color& opacity, double distance)
 /// Starts the rays that opaque surfaces do not block.
 void ShadowRays::Passing::begin() {
     stage_.blockedByOpaque(rays_, out_);
-    few_ =
-        world_.byOpacity_.few && std::all_of(rays_.begin(), rays_.end(), [&](auto& r) { return stage_.intersectsOnlyOpaque(r); });
+    few_ = world_.byOpacity().few &&
+           std::all_of(rays_.begin(), rays_.end(), [&](auto& r) { return stage_.intersectsOnlyOpaque(r); });
     for (size_t i = 0; i < rays_.size(); ++i) {
         const bool byOpacity = stage_.intersectsOnlyOpaque(rays_[i]);
         if (byOpacity && out_[i] == Color(0)) continue;
         const Going g{i, 0, rays_[i].media, rays_[i].origin};
-        if (byOpacity && (world_.allOpaque_ || !passes(world_.byOpacity_.clearBounds, rays_[i]))) {
+        if (byOpacity && (world_.allOpaque() || !passes(world_.byOpacity().clearBounds, rays_[i]))) {
             leaves(g);
             continue;
         }
         now_.push_back(g);
         ways_.push_back(rayOf(rays_[i]));
-        if (byOpacity && !few_) ways_.back().only = world_.byOpacity_.clear.data();
+        if (byOpacity && !few_) ways_.back().only = world_.byOpacity().clear.data();
     }
 }
 
@@ -196,7 +196,7 @@ void ShadowRays::Passing::leaves(const Going& g) {
 /// Crosses the boundary of a medium. Returns whether a medium of higher priority overrides it.
 bool ShadowRays::Passing::enters(Going& g, const SurfaceBinding& b, const accel::Hit& h, const Vec3& dir) {
     geometry::SurfacePoint at;
-    world_.accel_->point(h, at, 0);
+    world_.accel().point(h, at, 0);
     const Vec3 end = at.displaced ? at.displacedP : at.P;
     if (g.medium() >= 0) parts_.push_back({g.medium(), g.index, g.begin, end});
     const bool overruled = b.overruled(g.media);
@@ -217,7 +217,7 @@ void ShadowRays::Passing::intersect() {
         }
         accel::Ray behind = ways_[i];
         world_.goOn(behind, hits_[i]);
-        if (few_) hits_[i].shape = world_.byOpacity_.numbers[hits_[i].shape];
+        if (few_) hits_[i].shape = world_.byOpacity().numbers[hits_[i].shape];
         pass(now_[i], behind, hits_[i]);
     }
 }
@@ -232,9 +232,9 @@ void ShadowRays::Passing::pass(const Going& from, const accel::Ray& behind, cons
     }
     Going g = from;
     ++g.layers;
-    const int binding = world_.bindingOf_[h.shape];
-    const SurfaceBinding& b = world_.bindings_[size_t(binding)];
-    if (world_.media_.empty() || enters(g, b, h, behind.dir)) {
+    const int binding = world_.bindingOf()[h.shape];
+    const SurfaceBinding& b = world_.bindings()[size_t(binding)];
+    if (world_.media().empty() || enters(g, b, h, behind.dir)) {
         const Opacity& opacity = b.opacityFor(rays_[g.index].kind->set.mode);
         if (opacity.differs && !differs_.empty()) differs_[g.index] = 1;
         if (opacity.kernel) {
@@ -278,7 +278,7 @@ void ShadowRays::passSurfaces(std::span<const ShadowRay> rays, std::span<Color> 
     straights_.clear();
     differs_.clear();
     Passing passing(*this, rays, out);
-    if (world_.allOpaque_ && world_.media_.empty() && !passing.fading()) return blockedByAll(rays, out);
+    if (world_.allOpaque() && world_.media().empty() && !passing.fading()) return blockedByAll(rays, out);
     passing.run();
 }
 

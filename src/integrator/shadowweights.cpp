@@ -12,8 +12,8 @@ namespace alpenglow::integrator {
 /// the light of a ray nor its random number depends on its batch.
 void ShadowRays::roulette(const Sched& s) {
     constexpr float kLeastChance = .1f; // bounds the brightest that a survivor becomes
-    const float least = world_.photons_ ? world_.photons_->leastLight : 0;
-    if (!(least > 0) || context_.seen || world_.shadowVisibility_.differs()) return;
+    const float least = world_.photons() ? world_.photons()->leastLight : 0;
+    if (!(least > 0) || context_.seen || world_.shadowVisibility().differs()) return;
     const auto bits = [](float f) { return uint64_t(std::bit_cast<uint32_t>(f)); };
     size_t kept = 0;
     for (ShadowRay& r : queue) {
@@ -35,7 +35,7 @@ void ShadowRays::roulette(const Sched& s) {
 }
 
 void ShadowRays::takeAlone() {
-    const accel::Accel* const lobesOnly = world_.shadowVisibility_.lobesOnly.get();
+    const accel::Accel* const lobesOnly = world_.shadowVisibility().lobesOnly.get();
     for (const AloneLight& a : alone) {
         ShadowRay& r = queue[a.ray];
         if (!(maxComponent(transmitted_[a.ray]) > 0)) continue;

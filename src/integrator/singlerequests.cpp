@@ -163,8 +163,8 @@ bool SingleRequests::intersectsEmitter(const LobeVertex& l, size_t point, const 
     const size_t i = point % kBlock;
     const Vec3 from = l.elsewhere ? l.from : Vec3(v.P[0][i], v.P[1][i], v.P[2][i]);
     const float error = 1e-3f * (1 + length(from)) + std::fabs(l.bias);
-    if (world_.lights_.size() > 64) return true; // sending the ray costs less than testing all of them
-    return std::any_of(world_.lights_.begin(), world_.lights_.end(), [&](const BoundLight& light) {
+    if (world_.lights().size() > 64) return true; // sending the ray costs less than testing all of them
+    return std::any_of(world_.lights().begin(), world_.lights().end(), [&](const BoundLight& light) {
         if (light.kind != LightKind::Area || !light.emitter || light.emitter->empty()) return false;
         const Vec3 to = light.centre - from;
         const float along = std::max(dot(to, w), 0.f), reach = light.radius * 1.001f + error;

@@ -58,7 +58,7 @@ void LightKernels::shadowLight(const KernelRun& c, const BoundLight& light, int 
         rays.clear();
         of.clear();
     };
-    const uint32_t use = kLightPoint + uint32_t(&light - world_.lights_.data());
+    const uint32_t use = kLightPoint + uint32_t(&light - world_.lights().data());
     for (size_t i = 0; i < q.size(); ++i) {
         if (!v[i].lit || v[i].Cl == Color(0)) continue;
         const ShadePoint& lit = c.points[size_t(first + laneOf[i])];

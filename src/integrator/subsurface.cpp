@@ -44,7 +44,7 @@ Vec3 scattered(const Vec3& dir, float g, const Vec2& u) {
 } // namespace
 
 bool Walks::belongs(uint32_t shape, int group) const {
-    return subsurface_.ofShape(world_.shapes_[shape]->attributes()).group == group;
+    return subsurface_.ofShape(world_.shapes()[shape]->attributes()).group == group;
 }
 
 void Walks::run(Sched& sched) {
@@ -53,7 +53,7 @@ void Walks::run(Sched& sched) {
         else probe(int(i));
     while (!walkers_.empty() && !(context_.stop && *context_.stop)) step();
     askSurfaces(sched);
-    const auto list = [&](const Exit& x) { return world_.bindings_[size_t(world_.bindingOf_[x.shape])].lightList; };
+    const auto list = [&](const Exit& x) { return world_.bindings()[size_t(world_.bindingOf()[x.shape])].lightList; };
     std::stable_sort(exits_.begin(), exits_.end(), [&](const Exit& a, const Exit& b) { return list(a) < list(b); });
     for (size_t first = 0, end; first < exits_.size(); first = end) {
         for (end = first; end < exits_.size() && list(exits_[end]) == list(exits_[first]);) ++end;
@@ -87,7 +87,7 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
         met = k < limits::kShadowLayers && intersector_.intersect(ray, hit);
     }
     if (!met) return {};
-    const geometry::SurfacePoint s = world_.accel_->point(hit);
+    const geometry::SurfacePoint s = world_.accel().point(hit);
     const Vec3 n = s.displaced ? s.displacedN : s.n;
     const bool leaves = dot(ray.dir, turned ? -n : n) > 0;
     if (leaves && !(hit.distance < 4 * double(offset))) {
@@ -220,7 +220,7 @@ bool Walks::intersect(Walker& w, const accel::Hit& hit, double) {
     const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(w.asked)];
     const SubsurfaceMedium& b = below_[size_t(a.below)];
-    geometry::SurfacePoint at = world.accel_->point(hit);
+    geometry::SurfacePoint at = world.accel().point(hit);
     const Vec3 n = at.displaced ? at.displacedN : at.n;
     weigh(w, hit.distance, false);
     if (!(maxComponent(absolute(w.weight)) > 0) || !isFinite(w.weight)) return false;
@@ -269,7 +269,7 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
         extra.share = a.share;
         r.extra = store_.newExtra(extra);
         c.targets.push_back(a.target);
-        c.bindings.push_back(world.bindingOf_[x.shape]);
+        c.bindings.push_back(world.bindingOf()[x.shape]);
     }
     c.extrasOf = &store_;
     c.points.resize(exits.size());
@@ -277,14 +277,14 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
         const Exit& x = exits[i];
         const PathRay& r = c.rays[i];
         ShadePoint& p = c.points[i] = {};
-        p.shape = world.shapes_[x.shape].get();
+        p.shape = world.shapes()[x.shape].get();
         p.surface = x.point;
         p.P = p.E = r.origin;
         const Vec3 n = x.point.displaced ? x.point.displacedN : x.point.N;
         p.N = dot(n, x.out) < 0 ? -n : n;
         p.I = -x.out;
-        p.shutter = p.surface.time = world.shadesAtOpen_ ? 0 : r.shutter();
-        world.tellTime(p);
+        p.shutter = p.surface.time = world.shadesAtOpen() ? 0 : r.shutter();
+        world.setTime(p);
         p.ray = &r;
     }
 }
@@ -293,7 +293,7 @@ void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
 void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     auto c = batches_.take();
     c->bound = c_.bound;
-    c->binding = &world_.bindings_[size_t(world_.bindingOf_[exits[0].shape])];
+    c->binding = &world_.bindings()[size_t(world_.bindingOf()[exits[0].shape])];
     c->below = true;
     settleAt(*c, exits);
     std::vector<float> indirect;
@@ -308,8 +308,8 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
 void Walks::skies(const BatchContext& c, Sched& sched) {
     if (rules_.pickOne || !rules_.lightsAtRequests) return;
     const WorldImpl& world = world_;
-    for (int number : world.skies_) {
-        const BoundLight& light = world.lights_[size_t(number)];
+    for (int number : world.skies()) {
+        const BoundLight& light = world.lights()[size_t(number)];
         if (light.kind != LightKind::Environment || !light.kernel || !c.binding->lights.contains(number)) continue;
         std::vector<ShadePoint> q(c.points.size());
         for (size_t i = 0; i < q.size(); ++i) {

@@ -62,11 +62,11 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
     int ci = b.plan().Ci, oi = b.plan().Oi;
     cameraOutputs_.begin(c);
     bool suspended = b.kernel().facts().suspends; // then the atmosphere has not run yet
-    const bool media = !world_.media_.empty();
+    const bool media = !world_.media().empty();
     if (suspended) atmosphere_.atmosphereOfBatch(c, first, lanes, media || paths_.automaton);
     for (int i = first; i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[i];
-        const SurfaceBinding& binding = world_.bindings_[c.bindings[i]];
+        const SurfaceBinding& binding = world_.bindings()[c.bindings[i]];
         Color color = ci >= 0 ? b.color(ci, i) : Color(0), opacity = oi >= 0 ? b.color(oi, i) : Color(1);
         if (binding.matte && ray.camera()) {
             sched.setDistance(c.targets[i], 0);
@@ -106,22 +106,22 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
 
 bool SurfaceShading::vanish(BatchContext& c, Sched& sched) {
     const auto nothing = [&](int b) {
-        const SurfaceBinding& s = world_.bindings_[size_t(b)];
+        const SurfaceBinding& s = world_.bindings()[size_t(b)];
         return s.vanishes && s.lightOutputs.empty() && s.aside.empty();
     };
     if (!std::all_of(c.bindings.begin(), c.bindings.end(), nothing) || photons_.photonTrace() || !gathers_.gathered.empty() ||
         !accumulator_.traceSums.empty())
         return false;
-    const bool outputs = world_.settings_.firstSeen || !world_.wanted_.empty();
+    const bool outputs = world_.settings().firstSeen || !world_.wanted().empty();
     for (const PathRay& r : c.rays) {
         const bool reported = (r.first && !(r.counts && sched.plain())) || (r.counts && (outputs || r.sample->grid));
-        const bool hazy = r.medium() >= 0 && !world_.media_[size_t(r.medium())].homogeneous;
+        const bool hazy = r.medium() >= 0 && !world_.media()[size_t(r.medium())].homogeneous;
         if (reported || hazy || store_.extraOf(r).fade.fades()) return false;
     }
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& r = c.rays[i];
         if (r.counts) cameraOutputs_.see(r, Color(0), c.depths.empty() ? c.points[i].P.z : c.depths[i], false);
-        transparency_.continueBehind(world_.bindings_[size_t(c.bindings[i])], r, c.targets[i], c.points[i], Color(1), 1, 0,
+        transparency_.continueBehind(world_.bindings()[size_t(c.bindings[i])], r, c.targets[i], c.points[i], Color(1), 1, 0,
                                      sched);
     }
     return true;
@@ -152,9 +152,9 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     c->ran();
 
     // Atmospheres scale the requests of the kernel.
-    const bool media = !world_.media_.empty();
+    const bool media = !world_.media().empty();
     const bool hazy = !photons_.photonTrace() && (media || std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) {
-                                                      return world_.bindings_[size_t(b)].atmosphere.shader != nullptr;
+                                                      return world_.bindings()[size_t(b)].atmosphere.shader != nullptr;
                                                   }));
     if (hazy) {
         atmosphere_.atmosphereOfBatch(*c, 0, n, media || !c->emits.empty() || paths_.automaton);
@@ -173,7 +173,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     }
     std::vector<AskedLobe> asked; // only if outputs share lobes
     requests_.requestPairs(*c, aside.empty() ? nullptr : &asked, sched);
-    if (world_.settings_.hider == Hider::Path) transparency_.tellClear(*c);
+    if (world_.settings().hider == Hider::Path) transparency_.tellClear(*c);
     const auto rest = lightOutputs_.shareLight(*c, asked, aside, sched);
     vertexLight_.gather(*c, sched);
     shadows_.flush(sched);

@@ -23,9 +23,9 @@ bool isOpaque(const shading::Batch& b) {
 
 Color Transparency::leftBehind(const BatchContext& c, int i) const {
     // An atmosphere continues behind a transparent surface, as if it were absent. A medium ends there, and another one begins.
-    if (world_.media_.empty() || c.atmosphereEffects.empty() || !c.atmosphereEffects[size_t(i)].on) return Color(1);
+    if (world_.media().empty() || c.atmosphereEffects.empty() || !c.atmosphereEffects[size_t(i)].on) return Color(1);
     const PathRay& ray = c.rays[size_t(i)];
-    const SurfaceBinding& binding = world_.bindings_[size_t(c.bindings[size_t(i)])];
+    const SurfaceBinding& binding = world_.bindings()[size_t(c.bindings[size_t(i)])];
     const bool ends =
         ray.medium() >= 0 ||
         binding.beyond(ray.media ? *ray.media : shading::Media(), c.points[size_t(i)].surface.n, ray.dir, ray.dir).top() >= 0;
@@ -34,7 +34,7 @@ Color Transparency::leftBehind(const BatchContext& c, int i) const {
 
 Color Transparency::clearAt(const BatchContext& c, int i) const {
     if (photons_.photonTrace() && photons_.photonTrace()->job->models)
-        if (const PhotonModel m = world_.bindings_[size_t(c.bindings[size_t(i)])].photons.model; m != PhotonModel::Shader)
+        if (const PhotonModel m = world_.bindings()[size_t(c.bindings[size_t(i)])].photons.model; m != PhotonModel::Shader)
             return Color(m == PhotonModel::Transparent) * leftBehind(c, i);
     const shading::Batch& b = *c.batch;
     const int oi = b.plan().Oi;
@@ -68,7 +68,7 @@ void Transparency::continueBehind(const SurfaceBinding& b, const PathRay& ray, A
     const RayExtra& had = store_.extraOf(ray);
     r.weight = (had.fade.fades() || had.indirect != 1 ? had.whole : ray.weight) * t;
     float chosen = 1;
-    const Settings& set = world_.settings_;
+    const Settings& set = world_.settings();
     // Camera rays always continue behind surfaces, so that opacity, depth and AOVs are exact.
     if (rules_.roulette && ray.bounces > 0) {
         const int depth = ray.bounces + ray.layers + 1;
@@ -82,7 +82,7 @@ void Transparency::continueBehind(const SurfaceBinding& b, const PathRay& ray, A
             q = rouletteLocal(depth, t, depth > 3 ? dice() : 0);
         } else if (depth > 3) {
             const Color left(std::fabs(r.weight.x), std::fabs(r.weight.y), std::fabs(r.weight.z));
-            q = world_.lightTraces_ > 0 ? rouletteLocal(depth, left, dice()) : rouletteOfPath(r.weight, dice);
+            q = world_.lightTraces() > 0 ? rouletteLocal(depth, left, dice()) : rouletteOfPath(r.weight, dice);
         }
         if (!(q > 0)) return;
         r.weight = r.weight / q;
@@ -94,12 +94,12 @@ void Transparency::continueBehind(const SurfaceBinding& b, const PathRay& ray, A
     r.footprint = ray.footprint.after(travelled);
     r.first = false;
     if (r.passed) r.shadowDiffers |= b.opacity.differs;
-    guide_.continueBehind(r, int(&b - world_.bindings_.data()));
+    guide_.continueBehind(r, int(&b - world_.bindings().data()));
     r.path = paths_.next(ray.path, paths_.straight);
     r.media = media_.beyond(b, ray.media, p.surface.n, ray.dir, ray.dir);
     media_.tellLost(r.media, p);
     if (photons_.photonTrace() && (ray.medium() >= 0 || r.medium() >= 0)) { // from here on in another volume
-        r.lobeBinding = int(&b - world_.bindings_.data());
+        r.lobeBinding = int(&b - world_.bindings().data());
         r.lobeOrigin = p.P;
     }
     r.parted |= ray.medium() >= 0 || r.medium() >= 0;

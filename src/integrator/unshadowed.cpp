@@ -21,26 +21,26 @@ void UnshadowedLight::add(const BatchContext& c, const UnshadowedRay& r, const C
     ray.time = world_.shutterOf(from);
     ray.mask = visibilityBit(r.rays->type);
     ray.sides = set.sides;
-    ray.only = world_.shining_.data();
+    ray.only = world_.shining().data();
     ray.level = from.sample->level;
     accel::Hit hit;
     while (intersector_.intersect(ray, hit) && set.only && !set.only[hit.shape]) world_.goOn(ray, hit);
     if (!hit.valid()) return sums.add(TraceSums::UnshadowedEnvironment, through * environment);
     if (!r.bringsEmission) return; // light samples estimate area lights
     const auto isOn = [&](int light) {
-        const BoundLight& b = world_.lights_[size_t(light)];
+        const BoundLight& b = world_.lights()[size_t(light)];
         return b.kind == LightKind::Area && !b.mean && b.strategy != LightStrategy::Illuminance;
     };
-    const int light = world_.shapes_[hit.shape]->attributes().areaLight;
-    if (!world_.bindings_[size_t(c.bindings[size_t(r.point)])].lights.contains(light)) return;
+    const int light = world_.shapes()[hit.shape]->attributes().areaLight;
+    if (!world_.bindings()[size_t(c.bindings[size_t(r.point)])].lights.contains(light)) return;
     std::vector<int> all{light};
-    for (int part : world_.lights_[size_t(light)].parts) all.push_back(part);
+    for (int part : world_.lights()[size_t(light)].parts) all.push_back(part);
     for (int number : all) {
         if (!isOn(number)) continue;
-        const BoundLight& b = world_.lights_[size_t(number)];
+        const BoundLight& b = world_.lights()[size_t(number)];
         std::vector<ShadePoint> q(1);
-        q[0].shape = world_.shapes_[hit.shape].get();
-        world_.accel_->point(hit, q[0].surface, b.pointNeeds);
+        q[0].shape = world_.shapes()[hit.shape].get();
+        world_.accel().point(hit, q[0].surface, b.pointNeeds);
         q[0].P = intersectsAt(q[0].surface);
         q[0].N = q[0].surface.n;
         q[0].Ps = r.lit;

@@ -48,7 +48,7 @@ struct VertexBlocks final : Stage {
     /// Index of a point in LitSurfaces::values; -1: none.
     int litSurfaceAt(size_t point) const { return litSurface.empty() ? -1 : litSurface[point]; }
     size_t bytes() const; ///< memory that the columns hold
-    uint32_t numberOf(const BoundLight& l) const { return uint32_t(&l - world_.lights_.data()); }
+    uint32_t numberOf(const BoundLight& l) const { return uint32_t(&l - world_.lights().data()); }
 
     // By VertexLoading and the stages that read requests.
     const BatchContext* moved = nullptr;      ///< the batch, if its shader has moved points

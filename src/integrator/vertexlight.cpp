@@ -57,7 +57,7 @@ VertexLight::~VertexLight() = default;
 const VertexStages& VertexLight::stages() const { return parts_->set; }
 
 bool VertexLight::takesRays(const BatchContext& c) const {
-    return world_.settings_.rowRequests && std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
+    return world_.settings().rowRequests && std::none_of(c.rays.begin(), c.rays.end(), [&](const PathRay& r) {
                return r.quiet || r.scattered >= limits::kPathDepth;
            });
 }
@@ -80,7 +80,7 @@ static bool asksBlocks(const BatchContext& c) {
 /// Whether rays of a kernel hit the set of shapes that the surface names (Attribute "grouping" "tracesubset").
 static bool tracesSets(const WorldImpl& w, const BoundKernel& kernel) {
     const auto traces = [](const SiteInfo& s) { return s.kind == SiteKind::Trace; };
-    return w.traceSubsets_ && std::any_of(kernel.sites.begin(), kernel.sites.end(), traces);
+    return w.traceSubsets() && std::any_of(kernel.sites.begin(), kernel.sites.end(), traces);
 }
 
 bool VertexLight::takes(const BatchContext& c) const {
@@ -89,7 +89,7 @@ bool VertexLight::takes(const BatchContext& c) const {
 }
 
 bool VertexLight::takes(const BoundKernel& kernel) const {
-    return world_.settings_.rowRequests && rules_.pickOne && kernel.blocks && !tracesSets(world_, kernel);
+    return world_.settings().rowRequests && rules_.pickOne && kernel.blocks && !tracesSets(world_, kernel);
 }
 
 /// Reads the requests of a batch in rows. Returns false if they must be made one by one.
@@ -159,8 +159,8 @@ void VertexLight::followLobes(BatchContext& c, Sched& sched) {
     p.gather.mark(c);
     p.selection.select(c);
     counters_.ignored += p.blocks.ignored;
-    if (!world_.media_.empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
-    if (world_.settings_.firstSeen && !p.blocks.waits && !c.between) p.selection.showAlbedo(c);
+    if (!world_.media().empty() && !c.between) surfaces_.pointsOfRows(c); // to find the side on which rays continue
+    if (world_.settings().firstSeen && !p.blocks.waits && !c.between) p.selection.showAlbedo(c);
     p.selection.lightDirections(c);
     p.lights.run(c, sched);
     if (rules_.emissionCounts && lastSkies_.any()) p.last.run(c);
@@ -262,7 +262,7 @@ void VertexLight::beginExits(const BatchContext& c) {
 
 /// Whether the strips of a batch all make the same first request, for one ray each, at nearly all points of the batch.
 bool VertexLight::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
-    if (world_.traceSubsets_ || c.aside || c.between || c.below || !c.clear.empty() || c.points.empty() ||
+    if (world_.traceSubsets() || c.aside || c.between || c.below || !c.clear.empty() || c.points.empty() ||
         photons_.photonTrace() || !takesRays(c))
         return false;
     size_t asked = 0;

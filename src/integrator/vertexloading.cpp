@@ -51,7 +51,7 @@ void VertexLoading::takeRays(const RayBlock& rays, bool between) {
     v.last = 0;
     for (int k = 0; k < kBlock; ++k) {
         v.bounces[k] = int16_t(rays.bounces[k]);
-        v.last |= Lanes(v.bounces[k] - int16_t(rays.path[k] >> 16) - between >= world_.maxDepth_)
+        v.last |= Lanes(v.bounces[k] - int16_t(rays.path[k] >> 16) - between >= world_.maxDepth())
                   << k; // scattering in media does not count
     }
     Lanes lost = 0; // in media
@@ -90,7 +90,7 @@ void VertexLoading::loadPoints(size_t b, const BatchContext& c) {
     const bool rows = c.points.empty();
     for (size_t k = 0; k < size_t(kBlock); ++k) {
         const size_t i = first + std::min(k, n - 1); // repeats the last point
-        const SurfaceBinding& s = world_.bindings_[size_t(c.bindings[i])];
+        const SurfaceBinding& s = world_.bindings()[size_t(c.bindings[i])];
         const geometry::SurfacePoint& p = rows ? c.surfaces[i] : c.points[i].surface;
         const Vec3& P = rows ? p.P : c.points[i].P;
         if (!(P == p.P)) v_.moved = &c;

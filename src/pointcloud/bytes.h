@@ -9,9 +9,11 @@
 
 namespace alpenglow::pointcloud {
 
+/// Appends an unsigned integer.
 template <class T> void putNumber(std::vector<uint8_t>& to, T v) {
     for (size_t i = 0; i < sizeof(T); ++i) to.push_back(uint8_t(v >> (8 * i)));
 }
+/// Reads an unsigned integer of sizeof(T) bytes.
 template <class T> T takeNumber(const uint8_t* from) {
     T v = 0;
     for (size_t i = 0; i < sizeof(T); ++i) v = T(v | T(from[i]) << (8 * i));

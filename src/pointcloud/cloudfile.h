@@ -32,6 +32,7 @@ std::optional<PointCloud> loadCloud(const std::string& path, Diagnostics&, const
 std::vector<uint8_t> packChannels(std::span<const Channel>);
 /// Reads `count` channels and advances *at. Returns "", or an error message.
 std::string unpackChannels(std::span<const uint8_t> bytes, uint32_t count, size_t* at, std::vector<Channel>& to);
+/// Appends a point in the form that unpackPoint() reads.
 void packPoint(const PointCloud&, size_t point, std::vector<uint8_t>& to);
 /// Adds a point of 28 + 4 width bytes. Returns false for invalid points.
 bool unpackPoint(const uint8_t* from, int width, std::vector<float>& room, PointCloud& to);

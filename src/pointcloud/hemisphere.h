@@ -27,8 +27,11 @@ struct HemisphereQuery {
 /// Use one for each thread: it reuses its memory.
 class Hemisphere {
 public:
+    /// Starts a query: the cube is empty.
     void begin(const HemisphereQuery&);
+    /// Draws a cloud; several may be added.
     void add(const PointOctree&);
+    /// Sums the cube over the directions of the query.
     void finish();
     /// After finish(): means over the directions of the query. blocked(): covered fraction, 0 to 1 if clamped; then the arriving
     /// light.

@@ -13,11 +13,15 @@ struct Query {
     int maxDepth = -1; ///< the finest level that is read, 0 the coarsest; -1: all
 };
 
+/// A point cloud or a brick map, opened for lookups. Thread safe.
 class CloudMap {
 public:
     virtual ~CloudMap() = default;
+    /// In the order of their numbers.
     virtual const std::vector<Channel>& channels() const = 0;
+    /// Numbers of a point, of all channels.
     int width() const;
+    /// Index of a channel's first number; -1: no such channel.
     int offsetOf(const std::string& name) const;
     /// Weighted mean around a point, width() numbers. Returns false, with `out` unchanged, if there are no points. A point with
     /// disk radius r within h = radius + 2 r of P has weight (1 - d^2 / h^2)^2 times max(0, 1 - (1 - N.n) (1 + 2 r / (r +

@@ -11,8 +11,10 @@ namespace alpenglow::pointcloud {
 /// Which sides of disks block and send. Balls (no normal) do on all.
 enum class DiskSides : uint8_t { Both, Front, Back };
 
+/// The tree of one cloud. Immutable.
 class PointOctree {
 public:
+    /// A disk or a ball of the cloud.
     struct Point {
         Vec3 P, N;      ///< N: unit, or 0: a ball
         float area = 0; ///< > 0
@@ -22,6 +24,7 @@ public:
     };
     /// A function of the direction from which the node is seen, by real spherical harmonics of bands 0 to 2.
     using Harmonics = std::array<float, 9>;
+    /// A cluster of points, and what it looks like from afar.
     struct Node {
         Vec3 centre;                   ///< mean by area
         float reach = 0;               ///< largest distance of its disks from the centre

@@ -10,15 +10,19 @@ namespace alpenglow::pointcloud {
 
 /// Type of a channel: determines how spaces transform it.
 enum class ChannelType : uint8_t { Float = 0, Color = 1, Point = 2, Vector = 3, Normal = 4, Matrix = 5 };
+/// "float", "color", ...
 const char* nameOf(ChannelType);
+/// Numbers of a value.
 inline int sizeOf(ChannelType t) { return t == ChannelType::Float ? 1 : t == ChannelType::Matrix ? 16 : 3; }
 
+/// A named value of every point.
 struct Channel {
     std::string name;
     ChannelType type = ChannelType::Float;
     bool operator==(const Channel&) const = default;
 };
 
+/// Points in memory, each with a value for every channel.
 struct PointCloud {
     std::vector<Channel> channels;
     std::vector<Vec3> P, N;    ///< N: unit, or 0 where a point is a ball and no disk
@@ -29,6 +33,7 @@ struct PointCloud {
     /// Index of a channel's first number; -1: no such channel.
     int offsetOf(const std::string& name) const;
     std::span<const float> valuesOf(size_t point) const { return {values.data() + point * size_t(width()), size_t(width())}; }
+    /// Makes room for so many points in all.
     void reserve(size_t points);
     /// values: width() of them.
     void add(const Vec3& p, const Vec3& n, float r, std::span<const float> values);

@@ -4,6 +4,7 @@
 
 namespace alpenglow::pointcloud {
 
+/// The points of a cloud, for lookups.
 class PointTree {
 public:
     PointTree() = default;
@@ -12,6 +13,7 @@ public:
     float largest() const { return nodes_.empty() ? 0 : nodes_[0].radius; }
     /// Adds the points that count for a query: weights to *weight, weight times values to sums. See CloudMap::lookup().
     void gather(const Query&, double* weight, std::span<double> sums) const;
+    /// Memory of the tree and its points.
     size_t bytes() const;
 
 private:

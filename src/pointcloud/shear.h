@@ -10,6 +10,7 @@ namespace alpenglow::pointcloud {
 /// p * matrix() has the distances between points of the scene, but for one factor: a lower triangular matrix of determinant 1.
 struct Shear {
     std::array<int64_t, 6> entries{}; ///< in rows, in units of 2^-14
+    /// The entries as a matrix.
     Matrix matrix() const;
     auto operator<=>(const Shear&) const = default;
 };

@@ -8,11 +8,13 @@
 
 namespace alpenglow::ptex {
 
+/// A cache in parts, each with its own lock. The parts drop what was used longest ago.
 class Cache {
 public:
     explicit Cache(size_t bytes) : most_(bytes) {}
     using Ref = std::shared_ptr<const Image>;
     static constexpr uint32_t kWhole = ~0u, kTable = ~1u;
+    /// A face of a file at a resolution.
     struct Key {
         uint64_t texture;
         uint32_t face;
@@ -23,6 +25,7 @@ public:
     uint64_t number() { return next_++; } ///< for Key::texture
     /// Null: it is not here.
     Ref find(const Key&);
+    /// Adds a face, which find() then returns until it is dropped. tableBytes: memory beyond its pixels.
     void keep(const Key&, const Ref&, size_t tableBytes = 0);
 
 private:

@@ -4,8 +4,10 @@
 
 namespace alpenglow::ptex {
 
+/// The filter over the footprint.
 enum class Kernel : uint8_t { Gaussian, Triangle, Box, Point };
 
+/// One lookup.
 struct Query {
     uint32_t face = 0;
     float u = 0, v = 0;         ///< 0 to 1 within the face

@@ -16,10 +16,12 @@ struct OutputPolicy;
 
 namespace alpenglow::ptex {
 
+/// What the faces of the mesh are.
 enum class Mesh : uint8_t { Triangle = 0, Quad = 1 };
 enum class Number : uint8_t { Byte = 0, Word = 1, Half = 2, Float = 3 }; ///< bytes and words represent 0 to 1
 enum class Border : uint8_t { Clamp = 0, Black = 1, Periodic = 2 };      ///< where a face has no neighbour
 
+/// A face as the file describes it.
 struct Face {
     uint8_t ulog = 0, vlog = 0;                      ///< logarithms of the pixels along u and v; triangles: the same
     bool constant = false, subface = false;          ///< subface: a quarter, or so, of a face that is no quadrilateral
@@ -44,12 +46,14 @@ struct Tiles : Image {        ///< sides of the level; no values
     size_t within(int i, int j) const { return (size_t(j & ((1 << tv) - 1)) << tu) + size_t(i & ((1 << tu) - 1)); }
 };
 
+/// An entry of the metadata.
 struct Meta {
     std::string key;
     uint8_t type = 0; ///< 0 text, 1 to 3 integers of 1, 2, 4 bytes, 4 float, 5 double
     std::vector<uint8_t> bytes;
 };
 
+/// What holds for the whole file.
 struct Head {
     Mesh mesh = Mesh::Quad;
     Number number = Number::Byte;
@@ -67,6 +71,7 @@ std::shared_ptr<Cache> makeCache(size_t bytes);
 class Texture {
 public:
     virtual ~Texture() = default;
+    /// Valid as long as the texture.
     virtual const Head& head() const = 0;
     /// A face with its sides halved this many times, at least one pixel, premultiplied with alpha. The mean of the face if it
     /// cannot be read, which is reported once.

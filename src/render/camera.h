@@ -38,6 +38,7 @@ struct LensGrid {
 /// Empty under other hiders, or if the numbers are not counts (the camera reports that).
 LensGrid lensGridOf(const scene::Options&);
 
+/// The camera of a frame. Immutable.
 class Camera {
 public:
     /// Invalid values (sizes, windows, angles that are not positive) are reported and replaced by RI's defaults. Projections

@@ -12,13 +12,16 @@ namespace alpenglow::render {
 class Tracer {
 public:
     virtual ~Tracer() = default;
+    /// integrator::Integrator::trace().
     virtual bool trace(std::span<const integrator::CameraRay>, std::span<integrator::SampleResult>, const StopFlag* stop) = 0;
+    /// Of all calls so far.
     virtual const integrator::Counters& counters() const = 0;
     virtual bool seesNothing(std::span<const geometry::Plane>) const { return false; } ///< see integrator::Integrator
     /// See integrator::Integrator.
     virtual bool unfinished() const { return false; }
 };
 
+/// The pair.
 struct Engine {
     std::function<std::shared_ptr<const world::World>(std::shared_ptr<const scene::Frame>, const world::Settings&, Diagnostics&)>
         build;

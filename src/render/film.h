@@ -21,6 +21,7 @@ struct Window {
     int width() const { return x1 - x0; }
     int height() const { return y1 - y0; }
     size_t pixels() const { return size_t(width()) * size_t(height()); }
+    /// Whether a pixel is inside; x0 and y0 are, x1 and y1 are not.
     bool contains(int x, int y) const { return x >= x0 && x < x1 && y >= y0 && y < y1; }
     friend bool operator==(const Window&, const Window&) = default;
 };
@@ -37,6 +38,7 @@ enum class ChannelRule : uint8_t {
 /// Whether the samples of a channel are summed.
 inline bool isSum(ChannelRule r) { return r != ChannelRule::Min && r != ChannelRule::Max; }
 
+/// A channel of the film besides Ci and alpha.
 struct Channel {
     std::string name;
     ChannelRule rule = ChannelRule::Average;
@@ -61,6 +63,7 @@ struct Spread {
     uint64_t held(size_t i, uint64_t after) const {
         return std::max<uint64_t>(base, rates[i] * ofOne(after) / (kOne * kReplicas) * kReplicas);
     }
+    /// The same now.
     uint64_t held(size_t i) const { return held(i, steps); }
 };
 
@@ -167,9 +170,11 @@ public:
     /// either film is adaptive.
     bool merge(const Film& other, Diagnostics&, const SourcePlace& = {});
 
+    /// Samples of a pixel, which must be in the window.
     uint32_t count(int x, int y) const;
     Color mean(int x, int y) const;  ///< 0 without samples
     float alpha(int x, int y) const; ///< mean alpha
+    /// A channel of a pixel by its rule; 0 without samples.
     float aov(int x, int y, int channel) const;
     /// Mean of the sum of channels, all isSum(); 0 if there are none.
     float aov(int x, int y, std::span<const int> channels) const;
@@ -178,6 +183,7 @@ public:
         return aovs_[index(x, y) * description_.channels.size() + size_t(channel)];
     }
     Int128 fixed(int x, int y, int component) const { return pixel(x, y).rgb[component]; }
+    /// Of the luminance of a pixel's samples, for noise figures.
     Moments moments(int x, int y) const;
     /// Luminance sum and count of one replica. If samples have weights, the sums add up to the pixel's, and deviate from its mean
     /// as the replica's contribution to the pixel does.
@@ -189,6 +195,7 @@ public:
     uint64_t nonFinite() const { return nonFinite_; }         ///< samples dropped
     uint64_t nonFiniteAovs() const { return nonFiniteAovs_; } ///< AOV values not counted
     uint64_t saturated() const { return saturated_; }         ///< values clamped at 2^60
+    /// The first sample with values that are not finite, by number, row and column; nothing if there is none.
     std::optional<DroppedSample> firstDropped() const;
 
     /// A 64-bit digest of all sums: equal films have equal digests.

@@ -10,6 +10,7 @@ inline constexpr const char* kPicturesKey = "alpenglow:pictures";
 inline constexpr const char* kWholeKey = "alpenglow:whole";
 /// Converts to "A:B", and back; returns nothing unless A < B and B is at most limits::kSamplesPerPixel.
 std::string rangeText(SampleRange);
+/// The reverse.
 std::optional<SampleRange> rangeFromText(const std::string&);
 /// The samples of `whole` that are in none of the ranges, ascending.
 std::vector<SampleRange> missingSamples(const std::vector<SampleRange>& ranges, SampleRange whole);

@@ -12,14 +12,17 @@
 
 namespace alpenglow::render {
 
+/// One sample of a filter.
 struct FilterSample {
     float dx = 0, dy = 0; ///< offset from the pixel centre, pixels
     float weight = 1;     ///< multiplies the sample; 1 for filters without negative parts
 };
 
+/// A filter prepared for sampling. Immutable.
 class FilterSampler {
 public:
     explicit FilterSampler(const PixelFilter&);
+    /// u: two numbers in [0, 1). Continuous in u within each sign of the filter, so that stratified numbers stay stratified.
     FilterSample sample(Vec2 u) const;
     /// The density of sample()'s offsets, per square pixel; integrates to 1.
     double density(double x, double y) const;

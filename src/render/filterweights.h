@@ -18,6 +18,7 @@ public:
     float operator()(double x, double y) const;
     /// True if the value is the product of across(x) and down(y).
     bool separable() const { return separable_; }
+    /// The factor of a separable filter at an offset in pixels; 0 beyond its support.
     float across(double x) const { return axis(across_.get(), x, filter_.xw / 2); }
     float down(double y) const { return axis(down_.get(), y, filter_.yw / 2); }
 

@@ -8,7 +8,9 @@ namespace alpenglow::render {
 /// Unit 2^-40: 2^27 values (limits::kSamplesPerPixel) of up to 2^60 fit the 128 bits.
 inline constexpr int kFixedBits = 40;
 
+/// In units of 2^-40; beyond 2^60 the value is clamped and *saturated is set.
 inline Int128 toFixed(double v, bool* saturated) { return alpenglow::toFixed<kFixedBits>(v, saturated); }
+/// The nearest double.
 inline double fromFixed(Int128 v) { return alpenglow::fromFixed<kFixedBits>(v); }
 
 /// 256 bits, unsigned, for sums of squares (unit 2^-80) and their differences. Least significant limb first.

@@ -21,6 +21,7 @@ namespace alpenglow::render {
 /// where stated.
 class FrameProcesses {
 public:
+    /// How the processes work.
     struct Use {
         int most = 2;                           ///< maximum number of rendering processes, 1 to limits::kFramesAtOnce
         const StopFlag* stop = nullptr;         ///< may be null

@@ -7,6 +7,7 @@
 
 namespace alpenglow::render {
 
+/// The bytes of a message or of a frame's figures.
 std::string packed(Diagnostic);
 std::string packed(FrameResult);
 /// Return false if the bytes are not from packed().

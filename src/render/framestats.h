@@ -12,11 +12,13 @@ struct FrameStats {
     std::string scene, sceneHash; ///< the file; provenance.h
     std::string hider;            ///< "path"
     uint64_t seed = 0;
+    /// A picture that was written.
     struct Picture {
         std::string file, type;
         std::vector<std::string> channels;
     };
     std::vector<Picture> pictures; ///< those written
+    /// A map that was read.
     struct Texture {
         std::string file;
         uint64_t fileBytes = 0, memoryBytes = 0, scratchBytes = 0;

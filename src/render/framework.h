@@ -15,6 +15,7 @@ using world::Hider;
 /// The hider that runs for the scene's; reports unknown ones.
 Hider hiderOf(const scene::Options&, Diagnostics&);
 
+/// A frame from its plan to its pictures.
 struct Renderer::FrameWork {
     std::shared_ptr<const scene::Frame> frame;
     FrameStats& stats;

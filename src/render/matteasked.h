@@ -6,6 +6,7 @@
 
 namespace alpenglow::render {
 
+/// Parameters of one display.
 struct MattesAsked {
     std::vector<std::string> layers; ///< attributes "class:name", or "material"
     int ranks = 6;                   ///< 2 to limits::kMatteRanks, even

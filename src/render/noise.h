@@ -14,6 +14,7 @@ double relativeStandardError(double s1, double s2, uint64_t n);
 /// The same, with the exact variance.
 double relativeStandardError(const Moments&);
 
+/// The figures of one film.
 struct NoiseFigures {
     double noiseRSE = 0;    ///< mean of the pixels' RSE
     double noiseRSE999 = 0; ///< the k-th smallest RSE, k = min(floor(0.999 N), N - 1)
@@ -42,6 +43,7 @@ struct ReplicaError {
     double se = 0;    ///< 0 when replicas < 2
     int replicas = 0; ///< replicas with samples
 };
+/// Of one pixel, from its replicas.
 ReplicaError replicaError(const Film&, int x, int y);
 /// The same from sums and counts of each replica.
 ReplicaError replicaError(std::span<const double> sums, std::span<const uint32_t> counts);
@@ -61,6 +63,7 @@ struct SurfaceError {
     double se = 0;       ///< of L; 0 when replicas < 2
     int replicas = 0;    ///< replicas that hit the surface
 };
+/// Of one pixel, from the samples that hit a surface.
 SurfaceError surfaceError(const Film&, int x, int y);
 /// The pixel's term of NoiseFigures::noise: SE / (L + 1e-3), unbiased as in relativeReplicaError(), times sqrt(h / n), i.e. the
 /// error of a pixel whose n samples all hit the surface. So the position of an object's edge changes the figure only by the
@@ -93,6 +96,7 @@ PooledError pixelError(const Film&, int x, int y, int radius);
 struct Interval {
     double mean = 0, halfWidth = 0;
 };
+/// Around the pooled error, by Student's distribution.
 Interval confidenceInterval(const PooledError&, double level = 0.95);
 /// t with P(|T| <= t) = level for Student's distribution with dof >= 1 degrees of freedom; for fractional dof its logarithm is
 /// interpolated linearly in 1 / dof (2.5 % too large at 1.5, 0.5 % at 2.5).

@@ -6,6 +6,7 @@
 
 namespace alpenglow::render {
 
+/// Counts over frames.
 struct Outcome {
     int rendered = 0;          ///< frames with some rendered output
     int refused = 0;           ///< frames without any
@@ -13,6 +14,7 @@ struct Outcome {
     bool outputFailed = false; ///< a file could not be written
     bool outOfMemory = false;
     bool interrupted = false;
+    /// Adds those of another run of frames.
     void add(const Outcome& o) {
         rendered += o.rendered;
         refused += o.refused;

@@ -59,7 +59,9 @@ struct OutputSpec {
     std::optional<MattesAsked> asksMattes; ///< a "cryptomatte"
     display::MattesRef mattes;             ///< of it, once they are made. Not in part files
     bool deep = false;                     ///< a deep shadow map; PictureFacts::deep has its pixels
+    /// Whether one of its variables comes from there.
     bool has(OutputVariable::Source) const;
+    /// The names of its channels, in the order of the file.
     std::vector<std::string> channels() const;
 };
 
@@ -74,6 +76,7 @@ struct OutputBasis {
     DepthFilter depth = DepthFilter::Min;
 };
 
+/// All pictures of a frame, and what the integrator must compute for them.
 struct OutputPlan {
     OutputBasis basis;
     std::vector<OutputSpec> pictures;
@@ -83,9 +86,11 @@ struct OutputPlan {
     std::shared_ptr<const scene::LightPaths> lightPaths; ///< from `lights`; null: none. Not in part files
     std::vector<std::vector<int>> lightParts;            ///< by expression: the parts of Ci's light that it includes
     int parts = 0;                                       ///< number of parts
+    /// Floats of a sample in SampleResult::aovs.
     int engineFloats() const;
     /// Whether outputs of the surfaces that the camera sees first (SampleResult) are needed, or may be.
     bool needsFirstSeen() const;
+    /// Whether a picture has a variable from there.
     bool needs(OutputVariable::Source) const;
     /// Whether some picture, or every picture, is a deep shadow map.
     bool anyDeep() const, onlyDeep() const;

@@ -66,6 +66,7 @@ struct CompilerStatistics {
 /// compiler or a pointer to them.
 class ShaderCompiler {
 public:
+    /// What is the same for all shaders of a compiler.
     struct Settings {
         std::string cacheDirectory;  ///< "": none
         bool useDefaultCache = true; ///< take jit::defaultCacheDirectory() when cacheDirectory is empty

@@ -13,6 +13,7 @@
 
 namespace alpenglow::rsl {
 
+/// The members of ShaderCompiler: its caches, and what they share.
 struct ShaderCompiler::State {
     Settings settings;
     std::unique_ptr<jit::KernelCache> cache;
@@ -24,6 +25,7 @@ struct ShaderCompiler::State {
     PluginLibrary plugins;
     std::function<void*(const std::string&)> outside = [this](const std::string& name) { return plugins.address(name); };
 
+    /// The options of the front end that the settings mean.
     FrontOptions front() {
         FrontOptions o;
         o.defines = settings.defines;

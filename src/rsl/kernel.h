@@ -73,12 +73,12 @@ inline int inputParts(const ir::Input& i) {
 
 /// Strings at run time are ids. Ids are assigned in order of first use, never travel between processes; "" is 0. Thread safe.
 int32_t internString(const std::string&);
+/// The text of an id; valid for ever.
 const std::string& internedString(int32_t id);
 /// The same for a text that a shader made while it ran. Ids are never taken back, so all such texts together have a limit
 /// (limits::kRuntimeStrings): beyond it a new text is "", and `full` is set.
 int32_t internRuntimeString(const std::string&, bool& full);
 
-/// What kind of machine code is wanted. All of it is part of the cache key.
 /// A parameter with a value. Strings for string types, else numbers, element after element.
 struct ParameterValue {
     std::string name;
@@ -109,6 +109,7 @@ struct SentParameter {
     bool operator==(const SentParameter&) const = default;
 };
 
+/// What kind of machine code is wanted. All of it is part of the cache key.
 struct KernelOptions {
     int lanes = 16;       ///< 4, 8 or 16: the width of the machine's vectors
     int vectors = 0;      ///< vectors in flight (K): the kernel works on lanes*K points at a time; 0 = chosen from the code
@@ -161,8 +162,11 @@ public:
     /// scheduler. Returns the coroutine; done when finished(handle). A Request calls service (which notes it), then suspends;
     /// before resume the caller must have stored the results in the row block that service was given as `out`.
     void* start(KernelCall* c, int32_t first) const { return start_(c, first); }
+    /// Runs to the next suspension or to the end.
     void resume(void* handle) const { resume_(handle); }
+    /// Whether the strip has run to its end.
     bool finished(void* handle) const { return finished_(handle); }
+    /// Frees the frame of a strip.
     void destroy(void* handle) const { destroy_(handle); }
 
 protected:

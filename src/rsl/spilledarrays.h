@@ -14,6 +14,7 @@ namespace alpenglow::rsl {
 /// Bytes of all such elements of one run of a kernel, that is of all points that are shaded together.
 inline constexpr size_t kSpilledArrayBytes = size_t(256) << 20;
 
+/// The elements of resizable arrays beyond the memory of the kernel, for one run. For one thread.
 class SpilledArrays {
 public:
     explicit SpilledArrays(size_t most = kSpilledArrayBytes) : most_(most) {}

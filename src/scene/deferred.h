@@ -10,8 +10,11 @@ namespace alpenglow::scene {
 /// let displacement move points. strings: what it is made from, by name.
 inline constexpr const char* kDeferred = "Procedural";
 
+/// Whether it is such a primitive, with its content or without.
 inline bool isProcedural(const Primitive& p) { return p.kind == kDeferred && p.ints.size() == 2 && p.numbers.size() == 6; }
+/// Whether its content is missing so far.
 inline bool isDeferred(const Primitive& p) { return isProcedural(p) && p.ints[1] == 0; }
+/// Its number in the frame; requires isProcedural().
 inline int deferredNumber(const Primitive& p) { return p.ints[0]; }
 
 /// The way to the procedural that something was made by ("3/1": the second of those in the fourth), or "" for what the scene

@@ -19,6 +19,7 @@ public:
                              const SourcePlace&) = 0;
     /// A world, or a Make request, of a frame that is not wanted: nothing is made.
     virtual void passOver(const Options&) {}
+    /// A Make request that is passed over: the files that it would read, and last the one that it would write.
     virtual void passOverTexture(const std::vector<std::string>& /*files*/) {}
     /// Frames may be drawn while what is behind them is read. When this returns, those are that may write a file of this name,
     /// which is read next.

@@ -30,6 +30,8 @@ std::optional<std::string> lightPathIn(const std::string& source);
 /// The expression of a word: "direct", "indirect"; "other" is a word without an expression. Else nothing.
 std::optional<std::string> lightPathOfWord(std::string_view word);
 
+/// The automaton of the light path expressions of a frame (docs/light.md): states of paths, and the part of the outputs in which
+/// light that ends in a state counts. Immutable.
 class LightPaths {
 public:
     /// The most of what all expressions of a frame may need together. More is an error.
@@ -61,12 +63,14 @@ public:
     int symbol(PathEvent, PathScattering = PathScattering::None, int labelA = -1, int labelB = -1) const;
     /// Behind the camera.
     State begin() const { return begin_; }
+    /// The state behind an event, which symbol() numbers.
     State next(State s, int symbol) const { return s == kNone ? kNone : table_[size_t(s) * classes_ + classOf_[size_t(symbol)]]; }
     /// Whether some expression names s: then a shadow ray has to know how many surfaces it went straight through.
     bool countsStraight() const { return countsStraight_; }
 
     /// Light is in one part each, by where its path ends: outputs are sums of parts.
     int parts() const { return parts_; }
+    /// The part of light whose path ends in this state, below parts().
     int part(State s) const { return partOf_[s]; }
     /// The parts of an output, ascending.
     const std::vector<int>& partsOf(size_t output) const { return partsOf_[output]; }

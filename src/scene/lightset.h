@@ -31,6 +31,7 @@ public:
         const auto behind = after(runs_.begin(), runs_.end(), light);
         return behind != runs_.begin() && light < std::prev(behind)->second;
     }
+    /// Linear in the number of runs.
     void insert(int light) {
         const auto behind = after(runs_.begin(), runs_.end(), light);
         const bool before = behind != runs_.begin();
@@ -48,6 +49,7 @@ public:
             runs_.insert(behind, {light, light + 1});
         }
     }
+    /// Linear in the number of runs; a light that is not in the set changes nothing.
     void erase(int light) {
         const auto behind = after(runs_.begin(), runs_.end(), light);
         if (behind == runs_.begin() || light >= std::prev(behind)->second) return;
@@ -75,6 +77,7 @@ public:
     /// Ascending, with gaps between them.
     const std::vector<Run>& runs() const { return runs_; }
 
+    /// Visits the lights one by one, ascending.
     class const_iterator {
     public:
         using iterator_category = std::forward_iterator_tag;

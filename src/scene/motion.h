@@ -15,6 +15,7 @@ Transform compose(const Transform& a, const Transform& b);
 struct Shutter {
     double open = 0, close = 0;
     bool opens() const { return close > open; }
+    /// The time of a fraction of the open shutter: 0 open, 1 close.
     double at(double part) const { return open + (close - open) * part; }
     explicit Shutter(const Options&);
     Shutter() = default;

@@ -10,7 +10,9 @@
 
 namespace alpenglow::scene {
 
+/// How many values a variable has, and how they are interpolated (RISpec 3.2, 5; FaceVarying, FaceVertex: PRMan).
 enum class Class { Constant, Uniform, Varying, Vertex, FaceVarying, FaceVertex };
+/// What a value is (RISpec 3.2, 3). The transforms of points, vectors and normals differ.
 enum class Type { Float, Integer, String, Color, Point, Vector, Normal, HPoint, Matrix };
 /// Floats per element: Float/Integer/String 1, tuples 3, HPoint 4, Matrix 16.
 int componentCount(Type);
@@ -27,6 +29,7 @@ struct Param {
     SourcePlace place;
 };
 using ParamList = std::vector<Param>;
+/// The first parameter of this name; null if there is none.
 const Param* find(const ParamList&, std::string_view name);
 
 /// A value that may move: keys[i] at times[i], in shutter units, times increasing. One key when static. Between keys interpolate

@@ -45,6 +45,7 @@ struct Attributes {
     /// Between levels of detail: what is made is there for samples whose own number in [0, 1) is at least the first and below
     /// the second. Nothing: for all.
     std::optional<std::array<float, 2>> level;
+    /// The value of an attribute, "class:name"; null if it is not set.
     const Param* value(const std::string& key) const {
         auto i = values.find(key);
         return i == values.end() ? nullptr : &i->second;
@@ -95,6 +96,7 @@ struct Primitive {
 };
 using PrimitiveRef = std::shared_ptr<const Primitive>;
 
+/// LightSource or AreaLightSource.
 struct Light {
     ShaderRef shader; ///< the light shader call
     std::string handle;

@@ -31,6 +31,7 @@ struct ObjectBox {
     }
 };
 
+/// Properties of a kind that code asks for instead of its name.
 enum PrimitiveTrait : unsigned {
     kQuadric = 1,      ///< its numbers define a surface swept about z
     kMesh = 2,         ///< faces index its points
@@ -43,6 +44,7 @@ enum PrimitiveTrait : unsigned {
     kSurface = 256     ///< depends on nothing outside of its request but attributes, and is no volume
 };
 
+/// What there is to know about the request of a primitive without its geometry.
 struct PrimitiveKind {
     std::string_view name; ///< of the request
     unsigned traits;       ///< PrimitiveTrait

@@ -15,6 +15,7 @@ struct Object {
     std::string handle;
     std::vector<PrimitiveRef> primitives;
 };
+/// ObjectInstance: an object at a place, with the attributes of the request.
 struct Instance {
     int object = -1;
     Transform toWorld;

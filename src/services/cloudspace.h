@@ -9,6 +9,7 @@
 
 namespace alpenglow::services {
 
+/// Three rows of arguments from this one on; zero if row is negative.
 inline Vec3 tripleAt(const ServiceCall& call, int row, int lane) {
     return row < 0 ? Vec3(0.f) : Vec3(call.at(row, lane), call.at(row + 1, lane), call.at(row + 2, lane));
 }
@@ -23,8 +24,10 @@ inline Matrix toCloudSpace(Services& answers, const ServiceCall& call, const std
 /// Mean scale factor of lengths by a matrix.
 inline float growth(const Matrix& m) { return float(exact::pow(std::fabs(determinant3(m)), 1.0 / 3)); }
 
+/// n with length 1; zero where it has no direction.
 inline Vec3 unitOr0(const Vec3& n) { return directionOr(n, Vec3(0.f)); }
 
+/// A normal in the space that m leads to, unit or zero.
 inline Vec3 normalTo(const Matrix& m, const Vec3& n) { return unitOr0(Vec3(transformNormal(m, Vec3d(n)))); }
 
 /// Conversion from "current" to the space of a file, for the points of a call; computed once if it is the same for all.
@@ -49,6 +52,7 @@ public:
     /// Scale factor of an area with unit normal `n`. Not for straight ones.
     float areaGrowth(const Vec3& n) const { return shear_ && dot(n, n) > 0 ? pointcloud::areaGrowth(to_, n) : growth_ * growth_; }
     const std::optional<pointcloud::Shear>& shear() const { return shear_; }
+    /// The inverse of the last at().
     const Matrix& back() {
         if (!std::exchange(turned_, true)) back_ = inverse(to_);
         return back_;

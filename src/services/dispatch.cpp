@@ -40,8 +40,8 @@ void Services::sumAmbient(const ServiceCall& call) {
         });
         return;
     }
-    for (int li : world_->skies_) {
-        const BoundLight& l = world_->lights_[size_t(li)];
+    for (int li : world_->skies()) {
+        const BoundLight& l = world_->lights()[size_t(li)];
         if (l.kind != LightKind::Ambient || !c.binding->lights.contains(li)) continue;
         std::vector<ShadePoint> q;
         std::vector<int> laneOf;
@@ -65,7 +65,7 @@ void answerOption(Services& answers, const ServiceCall& call) {
     const WorldImpl& world = answers.world();
     call.each([&](int lane, const ShadePoint&) {
         const auto [known, fresh] = answers.memo().options.try_emplace(call.nameId(lane));
-        if (fresh || !world.built_) {
+        if (fresh || !world.built()) {
             const auto i = optionOf(world, rsl::internedString(call.nameId(lane)));
             known->second = i ? std::optional<ShaderValue>(ShaderValue(*i)) : std::nullopt;
         }
@@ -93,7 +93,7 @@ void answerRay(const ServiceCall& call) {
 }
 
 void Services::answerDepth(const ServiceCall& call) {
-    const double lo = world_->clipNear_, range = double(world_->clipFar_) - lo;
+    const double lo = world_->clipNear(), range = double(world_->clipFar()) - lo;
     call.each(
         [&](int lane, const ShadePoint&) { call.put(0, lane, range > 0 ? float((double(call.at(2, lane)) - lo) / range) : 0); });
 }
@@ -148,12 +148,12 @@ void Services::print(const ServiceCall& call, int lane, const std::string& text)
     }
     if (!c.bound->kernel->files().empty()) key.program = c.bound->kernel->files().front();
     if (call.s.once) // in construct()
-        return world_->prints_.once(std::to_string(d.place.file) + ":" + std::to_string(d.place.line) + ":" +
-                                        std::to_string(d.place.column),
-                                    key.program, text);
+        return world_->prints().once(std::to_string(d.place.file) + ":" + std::to_string(d.place.line) + ":" +
+                                         std::to_string(d.place.column),
+                                     key.program, text);
     key.place = {p.P.x, p.P.y, p.P.z};
     key.call = {d.place.file, d.place.line, d.place.column};
-    world_->prints_.add(key, text);
+    world_->prints().add(key, text);
 }
 
 } // namespace alpenglow::services

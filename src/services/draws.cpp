@@ -12,15 +12,15 @@ void Services::drawRandom(const ServiceCall& call) {
     const bool uniform = !call.d.strings.empty() && call.d.strings[0] == "uniform";
     const size_t sites = c.bound->sites.size(), points = c.points.size(), site = size_t(call.site);
     if (c.draws.size() != sites * points) c.draws.assign(sites * points, 0);
-    const uint32_t light = c.light ? uint32_t(c.light - world_->lights_.data()) + 1 : 0;
+    const uint32_t light = c.light ? uint32_t(c.light - world_->lights().data()) + 1 : 0;
     call.each([&](int lane, const ShadePoint& p) {
         const size_t at = size_t(call.first + lane);
         const uint32_t turn = c.draws[site * points + at]++;
         const shading::PathRay* r = c.rays.empty() ? p.ray : &c.rays[at];
         uint32_t vertex = 0;
         if (uniform) {
-            const auto shape = world_->numberOfShape_.find(p.shape);
-            vertex = childVertex(shape == world_->numberOfShape_.end() ? 0 : world_->keyOfShape(shape->second) + 1, light, 1);
+            const auto shape = world_->numberOfShape().find(p.shape);
+            vertex = childVertex(shape == world_->numberOfShape().end() ? 0 : world_->keyOfShape(shape->second) + 1, light, 1);
         } else {
             vertex = r ? r->vertex : uint32_t(at); // no ray: a vertex of a diced surface
         }

@@ -13,6 +13,7 @@ struct GatherRows {
     std::vector<int> counts; ///< by lane: rays of the complete statement
     std::vector<int> begins; ///< by lane: first ray in rows
     std::vector<float> rows;
+    /// The row of a ray that is in `rows`.
     float* of(int lane, int ray) { return rows.data() + (size_t(lane) * size_t(rsl::kGatherRays) + size_t(ray)) * size_t(width); }
 };
 

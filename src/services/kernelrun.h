@@ -7,6 +7,7 @@
 
 namespace alpenglow::services {
 
+/// One batch of points, what shades it, and the state of its services.
 struct KernelRun {
     std::shared_ptr<shading::Batch> batch;
     const BoundKernel* bound = nullptr;

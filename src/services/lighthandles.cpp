@@ -18,7 +18,7 @@ int Services::numberOfLight(const SurfaceBinding* surface, int32_t handle) {
 
 int32_t Services::handleOf(int light) {
     const auto [known, fresh] = handles_.try_emplace(light, 0);
-    if (fresh) known->second = rsl::internString(rsl::LightHandle{light, world_->lights_[size_t(light)].handle}.text());
+    if (fresh) known->second = rsl::internString(rsl::LightHandle{light, world_->lights()[size_t(light)].handle}.text());
     return known->second;
 }
 
@@ -77,7 +77,7 @@ void Services::lightHandles(const ServiceCall& call) {
             const SurfaceBinding* surface = litBinding(call, lane);
             if (!surface) return;
             world_->eachLight(surface->lights, [&](int i) {
-                const BoundLight& l = world_->lights_[size_t(i)];
+                const BoundLight& l = world_->lights()[size_t(i)];
                 const bool is = l.kernel && l.handle == want;
                 if (is) call.put(0, lane, std::bit_cast<float>(handleOf(i)));
                 return is;
@@ -102,7 +102,7 @@ void Services::getLights(const ServiceCall& call) {
         int n = 0;
         if (const SurfaceBinding* surface = litBinding(call, lane))
             world_->eachLight(surface->lights, [&](int i) {
-                if (!world_->lights_[size_t(i)].kernel || !isOfCategory(want, i)) return false;
+                if (!world_->lights()[size_t(i)].kernel || !isOfCategory(want, i)) return false;
                 if (n == limits::kLightHandles) {
                     diagnostics_.reportOnce("getlights", {Severity::Error,
                                                           Rie::Limit,
@@ -127,7 +127,7 @@ void Services::lightParameters(const ServiceCall& call, const LightsAsked& asked
     const bool element = d.argKinds.back() == Kind::Float; // the index is last
     for (auto [li, of] : asked) {
         const auto tell = [&](const std::string& name, int part, uint64_t points) {
-            std::optional<ShaderValue> t = partValue(*world_->lights_[size_t(li)].instance, name, part);
+            std::optional<ShaderValue> t = partValue(*world_->lights()[size_t(li)].instance, name, part);
             if (!t) return;
             if (t->kind == Kind::Float && !t->elements && d.resultKinds.size() > 1 && d.resultKinds[1] == Kind::Triple) {
                 t->kind = Kind::Triple; // a float also serves for a color
@@ -182,7 +182,7 @@ void Services::callLights(const ServiceCall& call, const LightsAsked& asked) {
 uint64_t Services::callLight(const ServiceCall& call, LightLoop& turn, int li, uint64_t of, LightLoop::Kept& kept) {
     KernelRun& c = call.c;
     const size_t width = size_t(call.lanes);
-    const BoundLight& light = world_->lights_[size_t(li)];
+    const BoundLight& light = world_->lights()[size_t(li)];
     uint64_t lit = 0;
     std::vector<float> sum(width), weight(width);
     for (int k = 0; k < light.samples; ++k) {
@@ -193,7 +193,7 @@ uint64_t Services::callLight(const ServiceCall& call, LightLoop& turn, int li, u
         const uint64_t now = sampleLight(c, turn, li, k, light.samples, call.first, of, call.lanes, one);
         if (k == 0) kept = one;
         if (k == 0 && light.sentCl >= 0) {
-            LightLoop::Kept& ran = turn.kept[keptName(turn, light, li, 0, world_->settings_.hider == Hider::Path)];
+            LightLoop::Kept& ran = turn.kept[keptName(turn, light, li, 0, world_->settings().hider == Hider::Path)];
             ran = one;
             ran.have = of;
         }

@@ -100,7 +100,7 @@ int32_t Services::lightBegin(KernelRun& c, int site, int first, uint64_t mask, i
 
 bool Services::isOfCategory(int32_t category, int light) {
     const auto [known, fresh] = ofCategory_.try_emplace(uint64_t(uint32_t(category)) << 32 | uint32_t(light));
-    if (fresh) known->second = inCategory(rsl::internedString(category), categoriesOf(world_->lights_[size_t(light)]));
+    if (fresh) known->second = inCategory(rsl::internedString(category), categoriesOf(world_->lights()[size_t(light)]));
     return known->second;
 }
 
@@ -109,9 +109,9 @@ const std::vector<std::pair<int, int>>& Services::turnsOf(const SurfaceBinding& 
     if (known.lights == b.lights) return known.turns; // indices of lists are assigned while the world is built
     known.lights = b.lights;
     known.turns.clear();
-    const bool samples = world_->settings_.hider == Hider::Path || rsl::internedString(category) == rsl::kSampleLoop;
+    const bool samples = world_->settings().hider == Hider::Path || rsl::internedString(category) == rsl::kSampleLoop;
     world_->eachLight(b.lights, [&](int i) {
-        const BoundLight& l = world_->lights_[size_t(i)];
+        const BoundLight& l = world_->lights()[size_t(i)];
         if (!samples && l.instance && l.instance->parameters.numbers.count(rsl::kSentOnly)) return false;
         if (l.kernel && l.kind != LightKind::Ambient && l.strategy != LightStrategy::Trace && isOfCategory(category, i))
             for (int k = 0; k < l.samples; ++k) known.turns.push_back({i, k});
@@ -159,7 +159,7 @@ uint64_t Services::lightFetch(KernelRun& c, int index, int first, uint64_t mask,
                 !isOfCategory(std::bit_cast<int32_t>(loop.given[size_t(row) * size_t(lanes) + size_t(lane)]), li))
                 mask &= ~(uint64_t(1) << lane);
     if (const LightSheet* sheet = sheetOf(c, loop, li, k, first, mask, lanes))
-        return takeFromSheet(c, loop, *sheet, world_->lights_[size_t(li)], first, mask, lanes, out);
+        return takeFromSheet(c, loop, *sheet, world_->lights()[size_t(li)], first, mask, lanes, out);
     return fetchKept(c, loop, li, k, first, mask, lanes, out);
 }
 
@@ -197,7 +197,7 @@ uint64_t Services::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet
     }
     c.lightReach.assign(width, {});
     c.lightDraw = drawOf(loop);
-    c.lightNow = int(&light - world_->lights_.data());
+    c.lightNow = int(&light - world_->lights().data());
     LoopCone cone(loop, width);
     uint64_t lit = 0;
     for (size_t lane = 0; lane < most; ++lane) {
@@ -213,9 +213,9 @@ uint64_t Services::takeFromSheet(KernelRun& c, LightLoop& loop, const LightSheet
 }
 
 uint64_t Services::fetchKept(KernelRun& c, LightLoop& loop, int li, int k, int first, uint64_t mask, int lanes, float* out) {
-    const BoundLight& light = world_->lights_[size_t(li)];
+    const BoundLight& light = world_->lights()[size_t(li)];
     // Cache key: light, sample, P, Ns, sent values and outputs of the surface; for a sky also the cone.
-    const uint64_t name = keptName(loop, light, li, k, world_->settings_.hider == Hider::Path);
+    const uint64_t name = keptName(loop, light, li, k, world_->settings().hider == Hider::Path);
     LightLoop::Kept passing;
     const bool room = loop.kept.size() < limits::kLightCache || loop.kept.count(name);
     LightLoop::Kept& kept = room ? loop.kept[name] : passing;

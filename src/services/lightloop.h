@@ -10,6 +10,7 @@ namespace alpenglow::services {
 
 /// Queries of a light to the surface that it lights. Indices are those of the queries of evaluateLight().
 struct LitSurface {
+    /// The binding of the lit surface; null: none.
     std::function<const SurfaceBinding*(int query)> binding;
     /// Current value of an output parameter; returns false to use the instance's.
     std::function<bool(int query, const std::string& name, std::vector<float>&)> output;
@@ -70,6 +71,7 @@ struct LightLoop : LightIterations {
     };
     std::unordered_map<uint64_t, Kept> kept; ///< by keptName()
 
+    /// Forgets everything, for a strip that begins at this point of the batch.
     void reset(int strip) {
         first = strip;
         setup = light = next.setup = -1;

@@ -20,7 +20,7 @@ LitSurface Services::litSurface(KernelRun& c, const LightLoop& loop, const std::
     LitSurface lit;
     lit.binding = [this, &c, &points](int q) -> const SurfaceBinding* {
         const size_t point = size_t(points[size_t(q)]);
-        return point < c.bindings.size() ? &world_->bindings_[size_t(c.bindings[point])] : c.binding;
+        return point < c.bindings.size() ? &world_->bindings()[size_t(c.bindings[point])] : c.binding;
     };
     lit.displaced = [&c, &points](int q, int& point) {
         point = points[size_t(q)];
@@ -42,7 +42,7 @@ LitSurface Services::litSurface(KernelRun& c, const LightLoop& loop, const std::
 
 void Services::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int first, int lanes, std::vector<ShadePoint>& q,
                                const std::vector<int>& laneOf, std::vector<LightValue>& out, std::vector<float>& values) {
-    const BoundLight& light = world_->lights_[size_t(li)];
+    const BoundLight& light = world_->lights()[size_t(li)];
     out.assign(q.size(), {});
     values.assign(q.size() * size_t(light.valueWidth), 0);
     std::vector<int> points;
@@ -115,7 +115,7 @@ int elementsOf(const BoundLight& light, const std::string& parameter) {
 
 void Services::keepChannels(KernelRun& c, const BoundLight& light, int point, const float* values) {
     size_t width = 0;
-    for (int w : world_->outputWidths_) width += size_t(w);
+    for (int w : world_->widthsOfOutputs()) width += size_t(w);
     c.lightChannels.resize(c.points.size() * width);
     std::vector<const std::string*> missing; // not written by the light
     const auto given = [&](const rsl::OutputName& name) {
@@ -159,7 +159,7 @@ void Services::chooseSent(const BoundLight& light, float u, const float* values,
 
 bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at, const Vec3& axis, float angle, int turn,
                           int turns, uint32_t nth, ShadePoint& p, float* factor) const {
-    const BoundLight& light = world_->lights_[size_t(li)];
+    const BoundLight& light = world_->lights()[size_t(li)];
     const ShadePoint& of = c.points[size_t(point)];
     p = of;
     p.Ps = at;
@@ -178,7 +178,7 @@ bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at,
         if (!(light.mean ? light.emitter->sampleSurface(at, u, choose, of.shutter, s, p.surface, light.pointNeeds)
                          : light.emitter->sample(at, u, choose, of.shutter, s, p.surface, light.pointNeeds)))
             return false;
-        if (world_->accel_->hasSolids() && !world_->accel_->keeps(world_->numberOfShape_.at(s.shape), intersectsAt(p.surface),
+        if (world_->accel().hasSolids() && !world_->accel().keeps(world_->numberOfShape().at(s.shape), intersectsAt(p.surface),
                                                                   intersectsNormal(p.surface), p.shutter))
             return false; // the part of a lamp outside of its CSG solid
         p.shape = s.shape;
@@ -189,7 +189,7 @@ bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at,
         if (usesFootprint(light)) setEmitterFootprint(p, *p.ray, at, spreadBehind(*p.ray, diffuse->spread(LobeParams{})));
         // cosLight A / (pi d^2 n) (docs/light.md)
         *factor = light.mean ? 1 / (s.pdf * float(turns)) : 1 / (float(kPi) * s.pdf * float(turns));
-    } else if (light.kind == LightKind::Environment && world_->settings_.hider != Hider::Path) {
+    } else if (light.kind == LightKind::Environment && world_->settings().hider != Hider::Path) {
         // A single direction, the surface normal: diffuse() then returns what a uniform sky gives.
         const Vec3 w = directionOr(axis, directionOr(dot(p.N, p.I) > 0 ? -p.N : p.N, Vec3(0, 0, 1)));
         p.shape = nullptr;
@@ -221,7 +221,7 @@ bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at,
         p.shape = nullptr;
         p.P = Vec3(transformPoint(light.instance->toCurrentAt(of.shutter), {0, 0, 0}));
         if (light.cone) {
-            if (p.ray && world_->settings_.hider == Hider::Path)
+            if (p.ray && world_->settings().hider == Hider::Path)
                 p.Ci = coneNumbers(random(*p.ray).draw(uint32_t(turn), uint32_t(turns)).pair(p.ray->vertex, use, nth));
             *factor = 1 / float(turns);
         }
@@ -231,7 +231,7 @@ bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at,
 
 uint64_t Services::sampleLight(KernelRun& c, const LightLoop& loop, int li, int turn, int turns, int first, uint64_t mask,
                                int lanes, LightLoop::Kept& kept) {
-    const BoundLight& light = world_->lights_[size_t(li)];
+    const BoundLight& light = world_->lights()[size_t(li)];
     auto row = [&](int r, int lane) { return loop.rows[size_t(r) * size_t(lanes) + size_t(lane)]; };
     std::vector<ShadePoint> q;
     std::vector<int> laneOf;
@@ -254,7 +254,7 @@ uint64_t Services::sampleLight(KernelRun& c, const LightLoop& loop, int li, int 
     const size_t width = size_t(light.valueWidth);
     // A light that sends many samples returns all of them in the run for the first.
     const auto ran = light.sentCl >= 0 && turn > 0
-                         ? loop.kept.find(keptName(loop, light, li, 0, world_->settings_.hider == Hider::Path))
+                         ? loop.kept.find(keptName(loop, light, li, 0, world_->settings().hider == Hider::Path))
                          : loop.kept.end();
     if (ran != loop.kept.end() && (ran->second.have & mask) == mask) {
         v.assign(q.size(), {});

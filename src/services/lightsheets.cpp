@@ -19,10 +19,10 @@ bool hasSheets(const BoundLight& l) {
 }
 
 int Services::sheetNumber(int light, int turn) {
-    if (sheetNumbers_.size() != world_->lights_.size()) {
-        sheetNumbers_.assign(world_->lights_.size(), -1);
+    if (sheetNumbers_.size() != world_->lights().size()) {
+        sheetNumbers_.assign(world_->lights().size(), -1);
         for (size_t i = 0; i < sheetNumbers_.size(); ++i) {
-            const BoundLight& l = world_->lights_[i];
+            const BoundLight& l = world_->lights()[i];
             if (!hasSheets(l) || size_t(sheets_) + size_t(l.samples) > limits::kLightCache) continue;
             sheetNumbers_[i] = sheets_;
             sheets_ += l.samples;
@@ -36,7 +36,7 @@ const LightSheet* Services::sheetOf(KernelRun& c, const LightLoop& loop, int li,
     if (loop.setup >= 0 || loop.refresh || c.light || c.volume) return nullptr;
     const int number = sheetNumber(li, turn);
     if (number < 0) return nullptr;
-    if (loop.depth > 1 && sampledAnew(world_->lights_[size_t(li)], world_->settings_.hider == Hider::Path)) return nullptr;
+    if (loop.depth > 1 && sampledAnew(world_->lights()[size_t(li)], world_->settings().hider == Hider::Path)) return nullptr;
     for (int lane = 0; lane < lanes && first + lane < int(c.points.size()); ++lane) {
         if (!(mask >> lane & 1)) continue;
         const Vec3& P = c.points[size_t(first + lane)].P;
@@ -58,7 +58,7 @@ const LightSheet* Services::sheetOf(KernelRun& c, const LightLoop& loop, int li,
 }
 
 void Services::fillSheet(KernelRun& c, const LightLoop& loop, int li, int turn, LightSheet& sheet) {
-    const BoundLight& light = world_->lights_[size_t(li)];
+    const BoundLight& light = world_->lights()[size_t(li)];
     const size_t n = c.points.size(), width = size_t(light.valueWidth);
     sheet.made = true;
     sheet.size = int(n);
@@ -113,8 +113,8 @@ const std::vector<Color>& Services::ambientOf(KernelRun& c) {
     c.ambient.assign(c.points.size(), Color(0));
     std::vector<ShadePoint>& q = sheetRoom_.q;
     std::vector<LightValue>& v = sheetRoom_.v;
-    for (int li : world_->skies_) {
-        const BoundLight& l = world_->lights_[size_t(li)];
+    for (int li : world_->skies()) {
+        const BoundLight& l = world_->lights()[size_t(li)];
         if (l.kind != LightKind::Ambient || !c.binding->lights.contains(li)) continue;
         q = c.points;
         for (size_t i = 0; i < q.size(); ++i) {
@@ -131,8 +131,8 @@ const std::vector<Color>& Services::ambientOf(KernelRun& c) {
 }
 
 bool Services::allAmbientHaveSheets(const SurfaceBinding& b) const {
-    return std::all_of(world_->skies_.begin(), world_->skies_.end(), [&](int li) {
-        const BoundLight& l = world_->lights_[size_t(li)];
+    return std::all_of(world_->skies().begin(), world_->skies().end(), [&](int li) {
+        const BoundLight& l = world_->lights()[size_t(li)];
         return l.kind != LightKind::Ambient || !b.lights.contains(li) || hasSheets(l);
     });
 }

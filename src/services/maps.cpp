@@ -114,8 +114,8 @@ void answerTexture(Services& answers, const ServiceCall& call) {
     const auto place = [&] { return call.place(); };
     texture::LookupOptions o = t.options;
     texture::Handle map = t.computed ? nullptr : t.map(world, place);
-    world.textures_->keepWithinLimit();
-    const std::optional<Color>& missing = world.textures_->settings().missing;
+    world.textures().keepWithinLimit();
+    const std::optional<Color>& missing = world.textures().settings().missing;
     if (!t.computed && !map && missing && !t.name.empty()) return answerMissing(t, call, *missing);
     if (call.s.kind == SiteKind::Texture && lookupTogether(t, call, map)) return;
     call.eachLane([&](int lane) {
@@ -130,7 +130,7 @@ void answerTexture(Services& answers, const ServiceCall& call) {
         float v[3] = {}, slopes[27] = {};
         float *g = t.slopes > 0 ? slopes : nullptr, *cu = t.slopes > t.firsts ? slopes + t.firsts : nullptr;
         if (call.s.kind == SiteKind::Texture) lookupTexture(t, call, lane, map, channel, o, v, g, cu);
-        else lookupEnvironment(t, call, lane, map, world.textures_->latLong(), channel, o, v, g, cu);
+        else lookupEnvironment(t, call, lane, map, world.textures().latLong(), channel, o, v, g, cu);
         for (int k = 0; k < t.count; ++k) call.put(k, lane, v[k]);
         for (int k = 0; k < t.slopes; ++k) call.put(t.count + k, lane, slopes[k]);
     });
@@ -200,7 +200,7 @@ void answerShadow(Services& answers, const ServiceCall& call) {
     const TextureSite& t = *call.s.map;
     const WorldImpl& world = answers.world();
     const auto place = [&] { return call.place(); };
-    if (call.c.light && world.settings_.hider == Hider::Path) { // traced shadows are exact
+    if (call.c.light && world.settings().hider == Hider::Path) { // traced shadows are exact
         if (t.computed || !t.name.empty())
             call.diagnostics.reportOnce("shadowmaps", {Severity::Info,
                                                        Rie::NoError,
@@ -218,7 +218,7 @@ void answerShadow(Services& answers, const ServiceCall& call) {
         if (t.computed) noteNoShadowMap(map = answers.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place), call);
         const SurfaceBinding* binding = call.binding(world, lane);
         const auto bias = biasOf(answers.memo(), binding ? binding->attributes.get() : nullptr);
-        const Matrix& toWorld = world.cameraToWorld_;
+        const Matrix& toWorld = world.cameraToWorld();
         const texture::ShadowOptions o = shadowOptions(t, call, lane, bias, toWorld);
         const auto vec = [&](size_t k) {
             const int r = t.rows[k];
@@ -257,7 +257,7 @@ void answerTextureInfo(Services& answers, const ServiceCall& call) {
     const auto place = [&] { return call.place(); };
     const rsl::ir::Site& d = call.d;
     // Maps store matrices from world space, shaders query from "current"
-    const Matrix& fromCurrent = answers.world().cameraToWorld_;
+    const Matrix& fromCurrent = answers.world().cameraToWorld();
     call.each([&](int lane, const ShadePoint&) {
         int32_t asked[2] = {0, 0}; // map and field; both may vary over the points
         const std::string* known[2] = {nullptr, nullptr};

@@ -141,7 +141,7 @@ const LightParameter& lightParameter(Services& answers, int32_t id, int light) {
     const auto [known, fresh] = answers.memo().ofLights.try_emplace({id, light});
     if (!fresh) return known->second;
     LightParameter* made = &known->second;
-    const BoundLight& l = answers.world().lights_[size_t(light)];
+    const BoundLight& l = answers.world().lights()[size_t(light)];
     const std::string& name = rsl::internedString(id);
     made->value = shaderParameter(*l.instance, name);
     int offset = 0;
@@ -188,7 +188,7 @@ void tellSent(const ServiceCall& q, const LightLoop& loop, const SiteInfo& setup
 void answerLightSource(Services& answers, const ServiceCall& q) {
     const LightLoop& loop = answers.lightLoop(q.c, q.first, q.lanes);
     if (loop.light < 0 || q.s.outside) return;
-    const int width = answers.world().lights_[size_t(loop.light)].valueWidth;
+    const int width = answers.world().lights()[size_t(loop.light)].valueWidth;
     const SiteInfo* setup = loop.setup >= 0 ? &q.c.bound->sites[size_t(loop.setup)] : nullptr;
     const LightParameter* same = q.s.nameId ? &lightParameter(answers, q.s.nameId, loop.light) : nullptr;
     if (same && !same->value) return;
@@ -214,7 +214,7 @@ constexpr char kLight[] = "light:", kOfLight[] = "attribute:light:";
 /// The area of an area light's geometry, in camera space; nothing for other lights.
 std::optional<Information> areaOf(const WorldImpl& w, const scene::Light& light) {
     const auto index = size_t(&light - w.frame().lights.data());
-    const Emitter* e = index < w.lights_.size() ? w.lights_[index].emitter.get() : nullptr;
+    const Emitter* e = index < w.lights().size() ? w.lights()[index].emitter.get() : nullptr;
     if (!e || e->empty()) return std::nullopt;
     return Information{{float(e->area())}, {}, false};
 }
@@ -258,7 +258,7 @@ void answerAttribute(Services& answers, const ServiceCall& q) {
     const WorldImpl& w = answers.world();
     const scene::Light* self = q.c.light ? q.c.light->source : nullptr;
     const int turn = self || q.s.outside ? -1 : answers.lightLoop(q.c, q.first, q.lanes).light;
-    const scene::Light* other = turn >= 0 ? w.lights_[size_t(turn)].source : nullptr;
+    const scene::Light* other = turn >= 0 ? w.lights()[size_t(turn)].source : nullptr;
     const bool imager = runsImager(q.c);
     ServiceMemo& memo = answers.memo();
     const auto samePoints = [&](int32_t id) {
@@ -269,7 +269,7 @@ void answerAttribute(Services& answers, const ServiceCall& q) {
     q.each([&](int lane, const ShadePoint& p) {
         const int32_t id = q.nameId(lane);
         const std::string& name = rsl::internedString(id);
-        if (!self && !imager && w.built_ && p.shape && samePoints(id)) {
+        if (!self && !imager && w.built() && p.shape && samePoints(id)) {
             const SurfaceBinding* b = q.binding(w, lane);
             if (memo.attributes.size() > kMostAttributes) memo.attributes.clear();
             const auto [known, fresh] = memo.attributes.try_emplace({id, turn, &p.shape->attributes(), b});
@@ -308,7 +308,7 @@ void answerShaderName(Services& answers, const ServiceCall& q) {
         if (own && c.light) of = c.light->instance;
         else if (kind == "lightsource") {
             const int turn = c.light || q.s.outside ? -1 : answers.lightLoop(c, q.first, q.lanes).light;
-            of = c.light ? c.light->instance : turn >= 0 ? w.lights_[size_t(turn)].instance : nullptr;
+            of = c.light ? c.light->instance : turn >= 0 ? w.lights()[size_t(turn)].instance : nullptr;
         } else if (b && own) of = c.bound == &b->displacementS ? b->displacement : c.volume ? c.volume->shader : b->surface;
         else if (b) of = shaderOf(*b, asked(kind), p);
         std::string name = of ? of->name : "";

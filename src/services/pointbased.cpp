@@ -76,7 +76,7 @@ Color between(Services& answers, const PointSite& s, const pointcloud::Hemispher
         const Vec3 at = unitOr0(Vec3(transformVector(s.toMap, Vec3d(w))));
         const Vec3 u = unitOr0(cross(at, std::fabs(at.x) < .9f ? Vec3(1, 0, 0) : Vec3(0, 1, 0))), v = cross(at, u);
         float c[3] = {};
-        texture::environment(s.map, answers.world().textures_->latLong(), 0, 3, at, u * h.spread(), v * h.spread(), colours, c);
+        texture::environment(s.map, answers.world().textures().latLong(), 0, 3, at, u * h.spread(), v * h.spread(), colours, c);
         map += Color(c[0], c[1], c[2]) * part;
     });
     return map;

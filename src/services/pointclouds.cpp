@@ -45,9 +45,9 @@ const shading::PathRay* rayOfLane(const ServiceCall& call, int lane, const Shade
 
 /// A number that differs for lights of different shaders, but not for parts of a light.
 uint32_t numberOf(const WorldImpl& world, const BoundLight& light) {
-    const auto first = std::find_if(world.lights_.begin(), world.lights_.end(),
+    const auto first = std::find_if(world.lights().begin(), world.lights().end(),
                                     [&](const BoundLight& l) { return &l == &light || (l.source && l.source == light.source); });
-    return uint32_t(first - world.lights_.begin()) + 1;
+    return uint32_t(first - world.lights().begin()) + 1;
 }
 
 /// Whether the point of a lane bakes, and its position in the order of all. `light`: numberOf() one, 0: none.
@@ -125,7 +125,7 @@ void answerBake(Services& answers, const ServiceCall& call) {
             else turn(part.type, to, &row[from]);
         }
         if (!s.layout.flat && s.addsArea) row.push_back(extentOf(*ray, p).second * space.areaGrowth(normal));
-        const bool kept = world.clouds_->baked.add(name, s.layout, key, row);
+        const bool kept = world.clouds().baked.add(name, s.layout, key, row);
         if (!s.layout.flat) call.put(0, lane, kept ? 1.f : 0.f);
     });
 }

@@ -51,7 +51,7 @@ void bindPtexture(SiteInfo& i, const rsl::CompiledKernel& k, const WorldImpl& wo
         else if (name == "triangle" || name == "bilinear") p->kernel = ptex::Kernel::Triangle;
         else if (name == "point") p->kernel = ptex::Kernel::Point;
         else if (name != "gaussian" && name != "default")
-            world.diagnostics_->reportOnce(
+            world.diagnostics().reportOnce(
                 "ptexture:" + name,
                 {Severity::Warning,
                  Rie::Unimplement,
@@ -102,7 +102,7 @@ void footprint(const PtexSite& s, const ServiceCall& call, int lane, const Shade
 
 const ptex::Texture* Services::ptexOf(int32_t id, const ServiceCall& call) {
     const auto [at, fresh] = ptex_.try_emplace(id, nullptr);
-    if (fresh && id) at->second = world_->ptex_->find(rsl::internedString(id), call.place());
+    if (fresh && id) at->second = world_->ptex().find(rsl::internedString(id), call.place());
     return at->second;
 }
 

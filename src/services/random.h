@@ -22,11 +22,15 @@ enum RandomUse : uint32_t {
     kLightPoint = 1u << 21
 };
 
+/// The random numbers of one camera sample. Each depends on (seed, pixel, sample, vertex, use, occurrence) alone.
 class Random {
 public:
     explicit Random(const SampleNumbers& numbers) : numbers_(numbers) {}
     Random(SeedKey seed, int px, int py, uint32_t sample) : numbers_(Sampler(seed, px, py), sample) {}
+    /// Two numbers in [0, 1). use: a call site, or one of the constants above; occurrence: earlier requests of the same use at
+    /// this vertex.
     Vec2 pair(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get2(vertex, use, occurrence); }
+    /// One number in [0, 1), independent of pair().
     float one(uint32_t vertex, uint32_t use, uint32_t occurrence) const { return numbers_.get1(vertex, use, occurrence); }
 
     /// For drawing many at once (NumberRows).

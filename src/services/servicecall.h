@@ -11,6 +11,7 @@ namespace alpenglow::services {
 class ServiceCall {
 public:
     ServiceCall(KernelRun&, Diagnostics&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
+    /// Calls body(lane, point) for the lanes of the mask that have a point.
     template <class Body> void each(Body&& body) const {
         for (int lane = 0; lane < lanes; ++lane)
             if ((mask >> lane & 1) && first + lane < int(c.points.size())) body(lane, c.points[size_t(first + lane)]);
@@ -20,13 +21,17 @@ public:
         for (int lane = 0; lane < lanes; ++lane)
             if ((mask >> lane & 1) && size_t(first + lane) < c.size()) body(lane);
     }
+    /// An argument.
     float at(int row, int lane) const { return in[size_t(row) * lanes + lane]; }
+    /// Sets a result.
     void put(int row, int lane, float v) const { out[size_t(row) * lanes + lane] = v; }
+    /// Sets a result that is a string.
     void putText(int row, int lane, const std::string& t) const { put(row, lane, std::bit_cast<float>(rsl::internString(t))); }
     /// The first string of the call, which may vary over the points.
     std::string name(int lane) const;
     /// The same, interned.
     int32_t nameId(int lane) const;
+    /// Of the call in the shader's file.
     SourcePlace place() const;
     /// Writes the value, if it fits the destination.
     void answer(int lane, const ShaderValue&) const;

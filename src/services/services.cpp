@@ -3,7 +3,7 @@
 namespace alpenglow::services {
 
 Services::Services(const WorldImpl& world, Diagnostics& d, Tracer* tracer)
-    : world_(&world), diagnostics_(d), tracer_(tracer), seed_(world.settings_.seed), noSample_(Sampler(seed_, 0, 0), 0) {}
+    : world_(&world), diagnostics_(d), tracer_(tracer), seed_(world.settings().seed), noSample_(Sampler(seed_, 0, 0), 0) {}
 
 void KernelRun::forget() {
     bound = nullptr;
@@ -55,7 +55,7 @@ SourcePlace ServiceCall::place() const {
 
 const SurfaceBinding* ServiceCall::binding(const WorldImpl& world, int lane) const {
     if (c.lit) return c.lit->binding(first + lane);
-    return c.bindings.empty() ? c.binding : &world.bindings_[size_t(c.bindings[size_t(first + lane)])];
+    return c.bindings.empty() ? c.binding : &world.bindings()[size_t(c.bindings[size_t(first + lane)])];
 }
 
 void ServiceCall::answer(int lane, const ShaderValue& t) const {

@@ -30,6 +30,7 @@ public:
 /// A lightsource() query to a light.
 struct LightParameter {
     std::optional<ShaderValue> value; ///< value set by the scene; nothing: the light has no such parameter
+    /// Consecutive components of one value.
     struct Part {
         int from, components;
         size_t to;
@@ -49,6 +50,7 @@ struct ServiceMemo {
     std::unordered_map<const scene::Attributes*, std::pair<float, float>> shadowBias; ///< Attribute "shadow": bias0, bias1
 };
 
+/// The services of one thread, with its caches.
 class Services {
 public:
     /// `tracer`: null if there are no lights.
@@ -57,7 +59,9 @@ public:
     void service(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     // illuminance loops, as in rsl::KernelCall (lightloop.cpp).
     int32_t lightBegin(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* rows);
+    /// Ends the innermost loop.
     void lightEnd(KernelRun&, int first, int lanes);
+    /// Evaluates the light of an iteration for the lanes of a mask: nine rows L, Cl, Ol. Returns the lit lanes.
     uint64_t lightFetch(KernelRun&, int light, int first, uint64_t mask, int lanes, float* out);
     /// Stores the AOV values of a light that ran for a point; `values`: BoundLight::values. Defined in lightsamples.cpp.
     void keepChannels(KernelRun&, const BoundLight&, int point, const float* values);
@@ -76,33 +80,35 @@ public:
 
     // Shared by services in other files.
     const WorldImpl& world() const { return *world_; }
+    /// The cache for answers in other files.
     ServiceMemo& memo() { return memo_; }
+    /// The state of the loops of a strip, which begins at this point.
     LightLoop& lightLoop(KernelRun&, int first, int lanes);
     /// The map of an interned name; takes a lock only the first time. `place`: returns the SourcePlace of the call.
     template <class Place> texture::Handle mapOfName(int32_t id, Place&& place) {
         const auto [at, fresh] = mapsByName_.try_emplace(id, nullptr);
-        if (fresh && id) at->second = world_->textures_->open(rsl::internedString(id), world_->settings_.texturePaths, place());
+        if (fresh && id) at->second = world_->textures().open(rsl::internedString(id), world_->settings().texturePaths, place());
         return at->second;
     }
     /// The result of textureinfo() for a map; nothing: there is no such file, which is not an error.
     template <class Place> const std::optional<texture::TextureInfo>& infoOfName(int32_t id, Place&& place) {
         const auto [at, fresh] = infosByName_.try_emplace(id);
-        if (fresh && id && world_->textures_->present(rsl::internedString(id), world_->settings_.texturePaths))
-            at->second = world_->textures_->info(mapOfName(id, place));
+        if (fresh && id && world_->textures().present(rsl::internedString(id), world_->settings().texturePaths))
+            at->second = world_->textures().info(mapOfName(id, place));
         return at->second;
     }
 
     /// The photon map of an interned name; takes a lock only the first time. Null: none.
     const photonmap::PhotonMap* photonsOf(int32_t id, const ServiceCall& call) {
         const auto [at, fresh] = photonMaps_.try_emplace(id, nullptr);
-        if (fresh && id) at->second = world_->photons_->find(rsl::internedString(id), call.place());
+        if (fresh && id) at->second = world_->photons()->find(rsl::internedString(id), call.place());
         return at->second;
     }
 
     /// The point cloud or brick map of an interned name; takes a lock only the first time.
     const pointcloud::CloudMap* cloudOf(int32_t id, const ServiceCall& call) {
         const auto [at, fresh] = clouds_.try_emplace(id, nullptr);
-        if (fresh && id) at->second = world_->clouds_->find(rsl::internedString(id), call.place());
+        if (fresh && id) at->second = world_->clouds().find(rsl::internedString(id), call.place());
         return at->second;
     }
 
@@ -111,7 +117,7 @@ public:
         char& known = lookedUp_[map];
         if (known > char(found)) return;
         known = char(1 + found);
-        world_->clouds_->noteLookup(map, found, call.place());
+        world_->clouds().noteLookup(map, found, call.place());
     }
 
     /// The same for point-based shadeops. `light`: with emitted light. With `shear` it is valid until trimOctrees().
@@ -119,13 +125,14 @@ public:
                                             const ServiceCall& call) {
         if (!shear) {
             const auto [at, fresh] = octrees_.try_emplace(int64_t(id) * 2 + light, nullptr);
-            if (fresh && id) at->second = world_->clouds_->octree(rsl::internedString(id), light, {}, call.place()).get();
+            if (fresh && id) at->second = world_->clouds().octree(rsl::internedString(id), light, {}, call.place()).get();
             return at->second;
         }
         const auto [at, fresh] = shearedOctrees_.try_emplace({int64_t(id) * 2 + light, *shear});
-        if (fresh && id) at->second = world_->clouds_->octree(rsl::internedString(id), light, shear, call.place());
+        if (fresh && id) at->second = world_->clouds().octree(rsl::internedString(id), light, shear, call.place());
         return at->second.get();
     }
+    /// Frees sheared octrees where there are many; call when none is in use.
     void trimOctrees() {
         if (shearedOctrees_.size() > limits::kShearedOctrees) shearedOctrees_.clear();
     }
@@ -135,12 +142,12 @@ public:
 
     const texture::IrradianceTable& irradianceOf(texture::Handle map) { // takes a lock only the first time
         const texture::IrradianceTable*& t = irradianceOf_[map];
-        if (!t) t = &world_->irradiance_.of(map, world_->textures_->latLong());
+        if (!t) t = &world_->irradiance().of(map, world_->textures().latLong());
         return *t;
     }
     const texture::SkyDirections& skyOf(texture::Handle map) { // likewise
         const texture::SkyDirections*& t = skyOf_[map];
-        if (!t) t = &world_->skyMaps_.of(map, world_->textures_->latLong());
+        if (!t) t = &world_->skyMaps().of(map, world_->textures().latLong());
         return *t;
     }
 

@@ -28,7 +28,10 @@ struct MovingSpace {
     std::vector<float> times;
     std::vector<Matrix> toCurrent;
     std::vector<ParameterBlock> parameters;
+    /// The interval of keys that contains a time, by its first key, and in `way` the position in it, 0 to 1. Times outside are
+    /// those of the ends.
     size_t keyAt(float time, float& way) const;
+    /// Shader space to current at a time, element by element between keys.
     Matrix at(float time) const;
     /// Difference of a parameter's component between a time and the first time.
     float change(const std::string& parameter, size_t component, float time) const;
@@ -172,17 +175,21 @@ public:
     /// become 0. A parameter of another type is not changed.
     void give(std::string_view parameter, int point, const GivenValue&);
 
+    /// The call to pass to the kernel; its rows belong to the batch.
     rsl::KernelCall& call() { return call_; }
     const rsl::CompiledKernel& kernel() const { return *kernel_; }
     int size() const { return call_.n; }
     const BatchPlan& plan() const { return *plan_; }
+    /// Index of an output, or -1, as of the plan.
     int output(std::string_view name) const { return plan_->output(name); }
     int output(const rsl::OutputName& name) const { return plan_->output(name); }
+    /// A component of an output at a point; components of an array follow each other by element.
     float value(int output, int component, int point) const { return out_[output][size_t(component) * call_.stride + point]; }
     /// A component of an output, by point.
     std::span<const float> row(int output, int component) const {
         return {out_[size_t(output)] + size_t(component) * size_t(call_.stride), size_t(call_.n)};
     }
+    /// The first three components of an output at a point.
     Color color(int output, int point) const {
         return {value(output, 0, point), value(output, 1, point), value(output, 2, point)};
     }

@@ -5,6 +5,7 @@
 
 namespace alpenglow::shading {
 
+/// A point on a primitive that is shaded as a part of its grid.
 struct GridPoint {
     uint32_t shape = 0, prim = 0; ///< as in a hit
     double b1 = 0, b2 = 0;

@@ -10,7 +10,9 @@
 
 namespace alpenglow::shading {
 
+/// What a ray was sent for (rayinfo("type"), Attribute "visibility").
 enum class RayType : uint8_t { Camera, Diffuse, Specular, Transmission };
+/// As rayinfo("type") names it.
 const char* toString(RayType);
 
 /// Source of colour and opacity at hits: shaders, or the primitive's Color and Opacity.
@@ -32,7 +34,9 @@ struct Media {
     bool lost = false; ///< more volumes were entered than are tracked
     int top() const { return count ? in[count - 1] : -1; }
     float topPriority() const { return count ? priority[count - 1] : 0; }
+    /// Whether the ray is in a volume of that medium.
     bool has(int medium) const { return std::find(in, in + count, medium) != in + count; }
+    /// Enters a volume. Of more than limits::kMedia the one of least priority is forgotten, and the ray is `lost`.
     void push(int medium, float priority = 0);
     /// Leaves the innermost volume of that medium; no effect if the ray is in none.
     void leave(int medium);
@@ -94,6 +98,7 @@ struct FreeFlight {
     Vec3d leftAt(float at) const;
     /// Density of the sampled point per unit of length, at a point with this transmittance.
     double density(const Vec3d& left) const;
+    /// The same at a distance.
     double density(float at) const { return density(leftAt(at)); }
     bool operator==(const FreeFlight&) const = default;
 };
@@ -116,6 +121,7 @@ struct RayExtra {
 /// The width of a ray, as a cone.
 struct Footprint {
     float width = 0, spread = 0; ///< half width, and its growth per unit of distance
+    /// Half width at a distance.
     float at(float way) const { return width + spread * way; }
     /// The footprint at a distance along the ray.
     Footprint after(float way) const { return {at(way), spread}; }
@@ -173,6 +179,7 @@ struct PathRay {
     int medium() const { return media ? media->top() : -1; }
     /// Camera rays: distance from the eye to the origin, over the near plane and surfaces passed. No lobe sampled such a ray.
     float start() const { return camera() ? lobeOrigin.x : 0; }
+    /// Sets start(); for camera rays only.
     void setStart(float way) { lobeOrigin = Vec3(way, 0, 0); }
     /// Its origin before all surfaces that it has passed; for camera rays the eye.
     Vec3 begin() const {

@@ -38,8 +38,11 @@ struct TargetValue {
     Vec3 normal;            ///< shading normal of that hit
 };
 
+/// Traces tasks to their end, the deepest first, and resumes kernels that wait for them. For one thread. Sums are exact, so their
+/// bits depend neither on the order of tasks nor on slices. Payload: what a task carries, copied byte by byte.
 template <class Payload> class Scheduler {
 public:
+    /// One ray to trace, and the target of its light.
     struct Task {
         int32_t depth = 0; ///< 0 = camera
         AccumulatorId target = kNoAccumulator;
@@ -51,6 +54,7 @@ public:
     class Strip {
     public:
         virtual ~Strip() = default;
+        /// Depth of the tasks that it waits for.
         virtual int depth() const = 0;
         /// Memory of its frame while it waits, in bytes.
         virtual size_t frameBytes() const = 0;
@@ -59,6 +63,7 @@ public:
         virtual bool resume(Scheduler&, std::span<const TargetValue> results) = 0;
     };
 
+    /// What traces: the pipeline of the integrator.
     class RayService {
     public:
         virtual ~RayService() = default;
@@ -78,6 +83,7 @@ public:
 
     /// A root target, read with value() after run().
     AccumulatorId newRoot() { return newTarget(-1); }
+    /// Adds a task. Its target stays open until the task has been followed.
     void spawn(Task t) { spawn(t.depth, t.target, t.payload); }
     /// For a payload made from another and modified in place; the reference is valid until the next spawn.
     Task& spawn(int depth, AccumulatorId target, const Payload& from = {}) {
@@ -92,6 +98,7 @@ public:
     /// Requires plain(): memory for some tasks written at once, plus `behind` more that may be overwritten; then call spawned()
     /// with their number.
     Task* room(size_t tasks, size_t behind) { return chunkAt(0, tasks).room(tasks + behind); }
+    /// Takes so many of the tasks written to room().
     void spawned(size_t count) {
         queues_[0].back().taken(count);
         queued_ += count;
@@ -110,7 +117,9 @@ public:
         if (c.y != 0) t.sum[1].add(c.y);
         if (c.z != 0) t.sum[2].add(c.z);
     }
+    /// Sets the transmission of a target; only its first task may.
     void setTransmission(AccumulatorId id, const Color& c) { targets_[id].value.transmission = c; }
+    /// Sets the distance to the nearest hit, and its normal.
     void setDistance(AccumulatorId id, float d, const Vec3& normal = {}) {
         targets_[id].value.distance = d;
         targets_[id].value.normal = normal;
@@ -181,6 +190,7 @@ public:
         return true;
     }
 
+    /// The value so far; of a root, complete after run().
     TargetValue value(AccumulatorId id) const {
         const Target& t = targets_[id];
         TargetValue v = t.value;
@@ -360,6 +370,7 @@ public:
     void hold(AccumulatorId id) {
         if (!plain()) ++open_[size_t(id)].pending;
     }
+    /// Ends what hold() began.
     void release(AccumulatorId id) {
         if (!plain()) complete(id);
     }

@@ -34,7 +34,9 @@ public:
         if (size_ + more > capacity_) grow(size_ + more);
         return end();
     }
+    /// Counts tasks that were written to room().
     void taken(size_t count) { size_ += count; }
+    /// Appends a copy.
     void push(const Task& t) {
         new (room(1)) Task(t);
         ++size_;

@@ -28,6 +28,7 @@ private:
 /// The tables of a world, made at first use. Thread safe.
 class IrradianceTables {
 public:
+    /// The table of a map, made at its first use; valid as long as this. Thread safe.
     const IrradianceTable& of(Handle, const LatLong& axes) const;
 
 private:

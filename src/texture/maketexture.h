@@ -6,6 +6,7 @@
 
 namespace alpenglow::texture {
 
+/// What the requests and maketx set.
 struct MakeOptions {
     std::string swrap = "black", twrap = "black"; ///< RISpec's default; lat-long maps: periodic, clamp
     std::string filter = "box";                   ///< of the reduction; widths multiply the filter's own (pyramid.h)
@@ -23,6 +24,7 @@ struct MakeOptions {
 /// an older map of that name is then intact. Unknown wrap modes and filters, and widths that are not positive, are reported and
 /// replaced by the defaults.
 bool makeTexture(const std::string& picture, const std::string& texture, const MakeOptions&, Diagnostics&);
+/// The same for MakeLatLongEnvironment: longitude along the width, latitude along the height.
 bool makeLatLongEnvironment(const std::string& picture, const std::string& texture, const MakeOptions&, Diagnostics&);
 /// Six pictures of the same size, in order px nx py ny pz nz (orientation: texture.h cubeFace), each with a field of view of fov
 /// degrees. Reduced levels are made when the map is loaded.

@@ -14,7 +14,9 @@ namespace alpenglow::texture {
 
 /// Continuation outside of 0..1. Black: zeros. Mirror: alternately mirrored copies.
 enum class Wrap { Black, Clamp, Periodic, Mirror };
+/// "black", "clamp", "periodic" or "mirror"; nothing for other names.
 std::optional<Wrap> wrapByName(std::string_view name);
+/// The name that wrapByName() reads.
 const char* nameOf(Wrap);
 
 /// A value for each of the 256 codes of a channel.
@@ -117,6 +119,7 @@ struct PictureRows {
 };
 /// The same of such a picture.
 display::Image reduced(const PictureRows&, const Reduction& = {}, Wrap swrap = Wrap::Clamp, Wrap twrap = Wrap::Clamp);
+/// All levels below the picture, each half the one before, down to one texel.
 std::vector<display::Image> reducedLevels(const PictureRows&, const Reduction& = {}, Wrap swrap = Wrap::Clamp,
                                           Wrap twrap = Wrap::Clamp);
 /// How many of image.levels, from the first on, are each half the one before and have its channels.

@@ -12,6 +12,7 @@ namespace alpenglow::texture {
 /// The folder of scratch files: TMPDIR, else /var/tmp, which is on a disk.
 std::string scratchFolder();
 
+/// One file and its mapping. Removed by the system when the last reference goes.
 class ScratchFile {
 public:
     /// Creates an empty file in scratchFolder(). Returns null after an error, with `why`.

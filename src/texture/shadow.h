@@ -5,6 +5,7 @@
 
 namespace alpenglow::texture {
 
+/// Parameters of one call.
 struct ShadowOptions {
     float swidth = 1, twidth = 1, sblur = 0, tblur = 0; ///< as LookupOptions
     float samples = 16;                                 ///< comparisons spread over the footprint or the source, at most 1024

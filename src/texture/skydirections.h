@@ -35,6 +35,7 @@ private:
 /// The tables of a world, made at first use. Thread safe.
 class SkyDirectionTables {
 public:
+    /// The table of a map, made at its first use; valid as long as this. Thread safe.
     const SkyDirections& of(Handle, const LatLong& axes) const;
 
 private:

@@ -28,6 +28,7 @@
 
 namespace alpenglow::texture {
 
+/// What a map was made for; how environment() and shadow() read it.
 enum class Kind { Texture, LatLong, Cube, Shadow };
 
 class ScratchFile;
@@ -79,6 +80,7 @@ struct LookupOptions {
 /// A footprint as squared widths in (s, t): the sum of the outer products of its two side vectors.
 struct Footprint {
     float ss = 0, st = 0, tt = 0;
+    /// From the two side vectors, (dsdx, dtdx) and (dsdy, dtdy).
     static Footprint sides(float dsdx, float dtdx, float dsdy, float dtdy);
 };
 
@@ -145,6 +147,7 @@ struct TextureInfo {
     std::optional<Matrix> viewing, projection; ///< world to camera, world to screen (x -1..1, y 1..-1) of the map
 };
 
+/// What is the same for all maps of a world.
 struct TextureSettings {
     Wrap plainWrap = Wrap::Clamp; ///< of pictures that state none
     bool linearise = true;        ///< colours of files that declare a gamma (PNG) become linear on loading, in every lookup
@@ -172,6 +175,7 @@ public:
     Handle open(const std::string& name, const std::vector<std::string>& searchPath = {""}, const SourcePlace& = {});
     /// Whether open() would find a file of that name, or a tile. Reports nothing.
     bool present(const std::string& name, const std::vector<std::string>& searchPath = {""});
+    /// What textureinfo() says of a map; nothing for a missing one.
     std::optional<TextureInfo> info(Handle) const;
     const LatLong& latLong() const { return settings_.latLong; }
     const TextureSettings& settings() const { return settings_; }
@@ -183,6 +187,7 @@ public:
         std::string path;
         size_t bytes = 0, memory = 0, scratch = 0;
     };
+    /// Sorted by name.
     std::vector<File> files() const;
     /// Their limit (TextureSettings::memory).
     size_t memoryLimit() const { return limit_; }

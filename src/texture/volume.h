@@ -11,11 +11,13 @@
 
 namespace alpenglow::texture {
 
+/// A block of voxels in memory.
 struct Volume {
     int width = 0, height = 0, depth = 0;
     std::vector<std::string> names; ///< of channels
     std::vector<float> values;      ///< slice by slice, row by row, interleaved
     int channels() const { return int(names.size()); }
+    /// The channels of a voxel. No check of the range.
     const float* at(int x, int y, int z) const {
         return &values[((size_t(z) * size_t(height) + size_t(y)) * size_t(width) + size_t(x)) * names.size()];
     }
@@ -29,6 +31,7 @@ extern const char* const volumeFormat;
 /// without gaps), a star and number ("a.png*16": a strip of 16 slices, else one picture 16 times), or ".vdb".
 bool namesVolume(const std::string& name);
 
+/// Where volumes are looked up, and for whom.
 struct VolumeFiles {
     std::vector<std::string> searchPath{""};
     ReadPolicy read{};

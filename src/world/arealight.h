@@ -21,12 +21,14 @@ public:
     /// shape is transparent, so that rays also reach emission behind it; null: none is.
     void takeDiced(const std::function<bool(const geometry::Shape&)>& seenThrough = {});
     /// Sets the side from which light leaves, also for shapes with two sides.
+    /// The sides of its shapes from which light leaves.
     enum class Shines { Both, Front, Back };
     void shinesTo(Shines);
     /// Bound of the directions in which light leaves.
     Cone front() const;
     bool empty() const { return entries_.empty(); }
     double area() const { return area_; }
+    /// Around all of its shapes.
     geometry::Bounds bounds() const;
     /// The point at (u, v) on the first shape, by area; `shape` is set to that shape. The emitter must not be empty.
     geometry::SurfacePoint point(Vec2 u, const geometry::Shape*& shape) const {
@@ -44,6 +46,7 @@ public:
     /// Whether sample() needs its number `choose`.
     bool chooses() const { return entries_.size() > 1; }
 
+    /// A light sample.
     struct Sample {
         const geometry::Shape* shape = nullptr;
         float pdf = 0;  ///< per steradian as seen from the lit point; > 0

@@ -20,7 +20,7 @@ bool bakesAt(const BoundKernel& k) {
 bool bakesAt(const WorldImpl& w, const SurfaceBinding& b) {
     bool bakes = false;
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) bakes |= bakesAt(*k);
-    if (!bakes) w.eachLight(b.lights, [&](int l) { return bakes |= bakesAt(w.lights_[size_t(l)].kernel); });
+    if (!bakes) w.eachLight(b.lights, [&](int l) { return bakes |= bakesAt(w.lights()[size_t(l)].kernel); });
     return bakes;
 }
 
@@ -38,22 +38,22 @@ void setSize(shading::GridPoint& g, const geometry::SurfacePoint& p) {
 
 bool bakes(const World& world) {
     const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of other folders use their own World
-    return w && w->clouds_ && w->clouds_->bakes;
+    return w && w->clouds().bakes;
 }
 
 std::vector<uint32_t> bakedShapes(const World& world) {
     const WorldImpl& w = implOf(world);
     std::vector<uint32_t> all;
-    for (uint32_t i = 0; i < w.shapes_.size(); ++i) {
-        const SurfaceBinding& b = w.bindings_[size_t(w.bindingOf_[i])];
-        if (bakesAt(w, b) && shading::hasGrid(*w.shapes_[i])) all.push_back(i);
+    for (uint32_t i = 0; i < w.shapes().size(); ++i) {
+        const SurfaceBinding& b = w.bindings()[size_t(w.bindingOf()[i])];
+        if (bakesAt(w, b) && shading::hasGrid(*w.shapes()[i])) all.push_back(i);
     }
     return all;
 }
 
 bool bakesAllOrNone(const World& world, uint32_t shape) {
     const WorldImpl& w = implOf(world);
-    const SurfaceBinding& b = w.bindings_[size_t(w.bindingOf_[shape])];
+    const SurfaceBinding& b = w.bindings()[size_t(w.bindingOf()[shape])];
     bool varies = false;
     const auto look = [&](const BoundKernel& k) {
         return varies |= std::any_of(k.sites.begin(), k.sites.end(),
@@ -61,25 +61,25 @@ bool bakesAllOrNone(const World& world, uint32_t shape) {
     };
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel}) look(*k);
     w.eachLight(b.lights, [&](int l) {
-        for (const auto& [strings, k] : w.lights_[size_t(l)].variants) look(k);
-        return look(w.lights_[size_t(l)].kernel);
+        for (const auto& [strings, k] : w.lights()[size_t(l)].variants) look(k);
+        return look(w.lights()[size_t(l)].kernel);
     });
     return !varies;
 }
 
 void noteLightsOfBakes(const World& world) {
-    CloudStore& c = *implOf(world).clouds_;
+    CloudStore& c = implOf(world).clouds();
     c.lightsRan.clear();
     c.notesLights = true;
 }
 
 bool bakingLightsRan(const World& world, uint32_t shape) {
     const WorldImpl& w = implOf(world);
-    w.clouds_->notesLights = false;
+    w.clouds().notesLights = false;
     bool missing = false;
-    w.eachLight(w.bindings_[size_t(w.bindingOf_[shape])].lights, [&](int l) {
-        const BoundLight& light = w.lights_[size_t(l)];
-        return missing |= bakesAt(light.kernel) && !w.clouds_->lightsRan.count(&light);
+    w.eachLight(w.bindings()[size_t(w.bindingOf()[shape])].lights, [&](int l) {
+        const BoundLight& light = w.lights()[size_t(l)];
+        return missing |= bakesAt(light.kernel) && !w.clouds().lightsRan.count(&light);
     });
     return !missing;
 }
@@ -88,13 +88,13 @@ void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPo
     const WorldImpl& w = implOf(world);
     const size_t before = to.size();
     std::vector<Vec3> P;
-    const geometry::Shape& s = *w.shapes_[shape];
-    shading::gridOf(s, geometry::DiceCamera::from(w.frame_->options), w.clouds_->centres, to, P);
+    const geometry::Shape& s = *w.shapes()[shape];
+    shading::gridOf(s, geometry::DiceCamera::from(w.frame().options), w.clouds().centres, to, P);
     size_t kept = before;
     for (size_t i = before; i < to.size(); ++i) {
         to[i].shape = shape;
         const geometry::SurfacePoint at = s.evaluateHit(to[i].prim, to[i].b1, to[i].b2);
-        if (w.accel_->hasSolids() && !w.accel_->keeps(shape, P[i - before], at.n, 0)) continue;
+        if (w.accel().hasSolids() && !w.accel().keeps(shape, P[i - before], at.n, 0)) continue;
         setSize(to[i], at);
         to[kept++] = to[i];
     }
@@ -102,19 +102,19 @@ void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPo
 }
 
 Vec3 placeOf(const World& world, const shading::GridPoint& p) {
-    const geometry::SurfacePoint at = implOf(world).shapes_[p.shape]->evaluateHit(p.prim, p.b1, p.b2);
+    const geometry::SurfacePoint at = implOf(world).shapes()[p.shape]->evaluateHit(p.prim, p.b1, p.b2);
     return at.displaced ? at.displacedP : at.P;
 }
 
-bool bakedNow(const World& world) { return implOf(world).clouds_->baked.pending(); }
+bool bakedNow(const World& world) { return implOf(world).clouds().baked.pending(); }
 
 void commitBakes(const World& world, bool keep) {
-    pointcloud::BakeLog& log = implOf(world).clouds_->baked;
+    pointcloud::BakeLog& log = implOf(world).clouds().baked;
     keep ? log.settle() : log.discard();
 }
 
 bool writeBakes(const World& world, bool allowWrite, const pointcloud::FileOwners& others, Diagnostics& d) {
-    return implOf(world).clouds_->baked.write({".", allowWrite}, d, others);
+    return implOf(world).clouds().baked.write({".", allowWrite}, d, others);
 }
 
 } // namespace alpenglow::world

@@ -67,7 +67,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         return f == i.text.end() ? std::string() : f->second;
     };
     auto said = [&](const std::string& what, const std::string& message) {
-        world.diagnostics_->reportOnce("trace:" + what + place.file + std::to_string(place.line),
+        world.diagnostics().reportOnce("trace:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::Unimplement, place, s.op + "(): " + message, {}, {}});
     };
     t->udir = row("udir");
@@ -92,7 +92,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
     for (const char* name : {"environmentmap", "environmentspace"})
         if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     if (const std::string map = text("environmentmap"); !map.empty()) {
-        t->map = world.textures_->open(map, world.settings_.texturePaths, place);
+        t->map = world.textures().open(map, world.settings().texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
     }
     for (const char* name : {"transmission", "environmentcontribution", "unshadowedenvironment", "arealightcontribution",
@@ -166,7 +166,7 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
         return f == i.text.end() ? std::string() : f->second;
     };
     const auto said = [&](const std::string& what, const std::string& message, const std::string& hint = {}) {
-        world.diagnostics_->reportOnce("subsurface:" + what + place.file + std::to_string(place.line),
+        world.diagnostics().reportOnce("subsurface:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::Unimplement, place, "subsurface(): " + message, hint, {}});
     };
     b->samples = row({"samples"});
@@ -199,7 +199,7 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
 
 std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKernel& k,
                                                const WorldImpl& world) {
-    const scene::Options& options = world.frame_->options;
+    const scene::Options& options = world.frame().options;
     auto t = std::make_shared<TextureSite>();
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
@@ -219,13 +219,13 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
             t->options.filter = *known;
         } else {
             const SourcePlace place = placeOf(s, k);
-            world.diagnostics_->reportOnce("texturefilter:" + f->second, unknownFilter(f->second, s.op, place));
+            world.diagnostics().reportOnce("texturefilter:" + f->second, unknownFilter(f->second, s.op, place));
         }
     }
     if (!s.strings.empty()) t->name = s.strings[0];
     t->computed = t->name.empty() && !s.argKinds.empty() && s.argKinds[0] == rsl::ir::Kind::String;
     t->count = s.resultKinds.empty() ? 0 : std::min(rsl::ir::components(s.resultKinds[0]), 3);
-    t->options.squeeze = world.textures_->settings().squeeze;
+    t->options.squeeze = world.textures().settings().squeeze;
     t->options.asLight = t->count == 3; // a float lookup reads data: a height, an opacity, a mask
     t->slopes = std::min(i.resultRowCount - t->count, 27);
     t->firsts = t->count * (i.kind == SiteKind::Texture ? 2 : 3);
@@ -304,7 +304,7 @@ static void bindTrace(SiteInfo& i, const rsl::ir::Site& s, const rsl::CompiledKe
     i.lobe = findLobe(distribution);
     if (!i.lobe) { // only in a kernel that the compiler has rejected
         i.lobe = findLobe("uniform");
-        world.diagnostics_->reportOnce("distribution:" + distribution,
+        world.diagnostics().reportOnce("distribution:" + distribution,
                                        {Severity::Error,
                                         Rie::BadToken,
                                         placeOf(s, k),
@@ -372,7 +372,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
     if (!k) return b;
     for (const auto& s : k->sites()) {
         SiteInfo i;
-        i.service = findService(world.services_, s.op);
+        i.service = findService(world.services(), s.op);
         i.kind = i.service ? i.service->kind : kindOf(s.op);
         i.site = &s;
         bindRows(i, s);
@@ -398,7 +398,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         b.needs.globalPhotons |= i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere);
         b.needs.facePlaces |= i.service && (i.service->traits & kReadsFacePlaces);
         bindLobe(i);
-        i.exponent = s.op == "specularstd" || world.rispecSpecular_ ? shadeops::kRispecExponent : shadeops::kSpecularExponent;
+        i.exponent = s.op == "specularstd" || world.rispecSpecular() ? shadeops::kRispecExponent : shadeops::kSpecularExponent;
         auto rowOf = [&](const char* name) {
             auto f = i.named.find(name);
             return f == i.named.end() ? -1 : f->second;

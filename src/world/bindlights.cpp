@@ -2,8 +2,8 @@
 // keeps the frame's index, the others are its parts, numbered after all lights of the frame.
 #include "scene/filterlink.h"
 #include "scene/scene.h"
-#include "world/impl.h"
 #include "world/lightobjects.h"
+#include "world/mutableworld.h"
 #include "world/outputs.h"
 
 namespace alpenglow::world {
@@ -114,7 +114,7 @@ static bool givesPhotons(const std::string& name) {
 }
 
 /// The kernel of a light, with its output parameters and the outputs that it writes for surfaces.
-BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, bool photons, Diagnostics& d) {
+BoundKernel MutableWorld::lightKernel(const ShaderInstance& light, bool photons, Diagnostics& d) {
     BoundKernel k;
     std::vector<std::string> extra, outputs;
     bool sends = false;
@@ -141,7 +141,7 @@ BoundKernel WorldImpl::lightKernel(const ShaderInstance& light, bool photons, Di
     return k;
 }
 
-void WorldImpl::bindPhotons(BoundLight& l, Diagnostics& d) {
+void MutableWorld::bindPhotons(BoundLight& l, Diagnostics& d) {
     const auto& all = l.instance->program->parameters();
     if (std::none_of(all.begin(), all.end(), [](const auto& p) { return givesPhotons(p.name); })) return;
     l.photons = lightKernel(*l.instance, true, d);
@@ -153,7 +153,7 @@ void WorldImpl::bindPhotons(BoundLight& l, Diagnostics& d) {
 }
 
 /// Finds the outputs of one statement of a light, and its values.
-void WorldImpl::bindLightOutputs(BoundLight& part, int block) {
+void MutableWorld::bindLightOutputs(BoundLight& part, int block) {
     const auto aovsOf = [&](const OutputName& name) { // by index; measureOutputs() converts to the first component
         std::vector<int> all;                         // "list[1]" also belongs to "list"
         for (size_t i = 0; i < wanted_.size(); ++i)
@@ -191,7 +191,7 @@ void WorldImpl::bindLightOutputs(BoundLight& part, int block) {
     }
 }
 
-void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
+void MutableWorld::bindLights(Diagnostics& d, const std::function<uint32_t(const geometry::Shape&)>& visibility) {
     const bool path = settings_.hider == Hider::Path;
     std::map<int, std::vector<const geometry::Shape*>> emitters;
     for (const auto& s : shapes_)
@@ -250,7 +250,7 @@ void WorldImpl::bindLights(Diagnostics& d, const std::function<uint32_t(const ge
     lightMessages_.erase(std::unique(lightMessages_.begin(), lightMessages_.end()), lightMessages_.end());
 }
 
-void WorldImpl::findShining() {
+void MutableWorld::findShining() {
     const auto found = [&](int l) { return lights_[size_t(l)].kind == LightKind::Area && !lights_[size_t(l)].mean; };
     for (const auto& s : shapes_) {
         const int l = s->attributes().areaLight;
@@ -260,7 +260,7 @@ void WorldImpl::findShining() {
     shining_.push_back(0);
 }
 
-void WorldImpl::countLightTraces() {
+void MutableWorld::countLightTraces() {
     const auto sitesOf = [](const BoundKernel& k, auto test) {
         return double(std::count_if(k.sites.begin(), k.sites.end(), [&](const SiteInfo& s) { return test(s.kind); }));
     };
@@ -275,7 +275,7 @@ void WorldImpl::countLightTraces() {
     lightTraces_ = int(std::ceil(traces * uses));
 }
 
-void WorldImpl::bindSentStrings(Diagnostics& d) {
+void MutableWorld::bindSentStrings(Diagnostics& d) {
     std::map<std::string, std::map<std::string, std::string>> sent;
     for (const SurfaceBinding& b : bindings_)
         for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.entering, &b.atmosphere.kernel})
@@ -301,7 +301,7 @@ void WorldImpl::bindSentStrings(Diagnostics& d) {
         }
 }
 
-scene::LightSet WorldImpl::withParts(const scene::LightSet& lights) const {
+scene::LightSet MutableWorld::withParts(const scene::LightSet& lights) const {
     scene::LightSet all = lights;
     if (lights_.size() > frame_->lights.size())
         for (int l : lights)
@@ -331,7 +331,7 @@ static ShadePoint askedAt(const Vec3& p, const Vec3& n, const Vec3& lit) {
     return q;
 }
 
-void WorldImpl::measureLights(Evaluator& evaluator, Diagnostics& d) {
+void MutableWorld::measureLights(Evaluator& evaluator, Diagnostics& d) {
     const bool many = std::any_of(lightLists_.begin(), lightLists_.end(),
                                   [&](const LightList& l) { return sampledOf(l).size() > size_t(limits::kLightsSampled); });
     for (BoundLight& l : lights_) {

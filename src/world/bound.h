@@ -19,6 +19,7 @@ struct ShaderInstance {
     Matrix toCurrent;                                   ///< at shutter open
     std::shared_ptr<const shading::MovingSpace> moving; ///< null: shader space does not move
     shading::InstanceView view() const { return {&parameters, &toCurrent, moving.get()}; }
+    /// Shader space to current at a fraction of the open shutter.
     Matrix toCurrentAt(float shutter) const { return moving ? moving->at(shutter) : toCurrent; }
     SourcePlace place;
     bool differences = false; ///< derivatives by differences (rsl/kernel.h)
@@ -28,12 +29,14 @@ using InstanceRef = std::shared_ptr<const ShaderInstance>;
 /// Outputs of point lights: radius of the disk that casts their shadows, and number of shadow rays to it.
 inline constexpr char kShadowRadius[] = "__shadowradius", kShadowSamples[] = "__shadowsamples";
 
+/// Where a light comes from, by its illuminate and solar statements and its geometry.
 enum class LightKind : uint8_t { Ambient, Point, Distant, Environment, Area };
 
 /// Attribute "light" "samplingstrategy": whether illuminance loops or trace() see an area light or sky. Lighting shadeops see
 /// all.
 enum class LightStrategy : uint8_t { Both, Illuminance, Trace };
 
+/// One block of a light shader: its kernel, its geometry, and what sampling needs to know of it.
 struct BoundLight {
     LightKind kind = LightKind::Ambient;
     InstanceRef instance;
@@ -89,7 +92,7 @@ struct BoundLight {
     Vec3 centre;
     float radius = 0;
     Cone front;                                         ///< Area: bound of the directions in which light leaves
-    int group = -1;                                     ///< WorldImpl::lightGroups_; -1: none
+    int group = -1;                                     ///< WorldImpl::lightGroups(); -1: none
     std::shared_ptr<const shading::ParameterRows> rows; ///< for the kernel of its group
 };
 
@@ -147,7 +150,7 @@ struct LightOutput {
         BoundKernel bound;
         std::vector<int> own, main;
     };
-    int number = 0;       ///< WorldImpl::lightOutputs_
+    int number = 0;       ///< WorldImpl::lightOutputs()
     rsl::OutputName slot; ///< name in kernels: "d", or "list[1]" for an array
     std::vector<std::string> outputs;
     Kernel S, V; ///< as SurfaceBinding::surfaceS, surfaceV
@@ -178,7 +181,7 @@ struct SurfaceBinding {
     BoundKernel surfaceV; ///< only if batches need it: several bindings, or different spaces
     BoundKernel displacementS;
     Medium atmosphere;             ///< null shader: none
-    int inside = -1, outside = -1; ///< WorldImpl::media_ of Interior and Exterior; -1: none
+    int inside = -1, outside = -1; ///< WorldImpl::media() of Interior and Exterior; -1: none
     float insidePriority = 0, outsidePriority = 0;
     /// Whether the surface is no boundary where a ray is: a medium of higher priority than its interior is on both sides.
     bool overruled(const shading::Media* at) const {
@@ -194,16 +197,18 @@ struct SurfaceBinding {
     scene::LightSet lights;       ///< lights that are on, with the parts of their shaders: WorldImpl::eachLight()
     int group = 0;                ///< equal: same program and lights; points are shaded in one batch
     int program = 0;              ///< equal: same kernel; points may share a V batch
-    int lightList = 0;            ///< equal: same lights; index in WorldImpl::lightLists_
+    int lightList = 0;            ///< equal: same lights; index in WorldImpl::lightLists()
     bool usesObjectSpace = false; ///< the kernel reads "object" or "shader" matrices that differ within the binding
     int areaLight = -1;           ///< the area light of this geometry
     bool explicitSurface = true;
     Opacity opacity;                         ///< by attributes
     Opacity primitiveOpacity, shaderOpacity; ///< for rays with a "hitmode"; set only if there are any
+    /// The attenuation of rays with this "hitmode".
     const Opacity& opacityFor(shading::HitMode m) const {
         return m == shading::HitMode::Default ? opacity : m == shading::HitMode::Primitive ? primitiveOpacity : shaderOpacity;
     }
     uint32_t primitiveFor = 0; ///< visibility bits of rays that see the primitive's own Color and Opacity (Attribute "shade")
+    /// Whether such a ray sees the primitive's Color and Opacity instead of its shaders.
     bool asPrimitive(shading::HitMode m, RayType t) const {
         return m == shading::HitMode::Primitive || (m == shading::HitMode::Default && (primitiveFor & visibilityBit(t)));
     }

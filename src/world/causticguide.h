@@ -24,6 +24,7 @@ struct GuidePhoton {
     float power = 0; ///< luminance; sums over an emission to the flux that is stored
 };
 
+/// The guide of one pass. Immutable.
 class CausticGuide {
 public:
     static constexpr int kMostCode = 6;
@@ -57,6 +58,7 @@ public:
     }
     /// Whether codeFor() can be nonzero in any cell.
     bool maySend(float brings) const { return kGain * perBrightness_ * brings * mostIrradiance_ > kLeastWanted; }
+    /// The probability that a code above 0 stands for.
     static float chanceOf(int code) { return 1.f / float(1 << (code - 1)); }
     /// Density of draw() per steradian. w: unit, from P.
     float density(const Cell& c, const Vec3& P, const Vec3& w) const { return lobes_[size_t(c.lobes)].density(P, w); }

@@ -37,7 +37,7 @@ bool isOption(const std::string& name) {
 }
 
 void noteString(const std::string& name, const SourcePlace& at, const WorldImpl& world) {
-    world.diagnostics_->reportOnce("bakedstring:" + name + at.file + std::to_string(at.line),
+    world.diagnostics().reportOnce("bakedstring:" + name + at.file + std::to_string(at.line),
                                    {Severity::Warning,
                                     Rie::BadToken,
                                     at,
@@ -119,8 +119,8 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
     c->writes = i.kind != SiteKind::Texture3d && (c->computed || !c->name.empty());
     c->steady = i.text.count(rsl::kPairSteady) > 0;
     if (c->writes) {
-        world.clouds_->bakes = true;
-        world.clouds_->centres |= c->centres >= 0;
+        world.clouds().bakes = true;
+        world.clouds().centres |= c->centres >= 0;
     }
     return c;
 }

@@ -18,6 +18,7 @@ struct CloudSite {
     int spaceRow = -1;
     int radius = -1, scale = -1; ///< of the disk or the filter
     int centres = -1, maxDepth = -1;
+    /// An optional argument: a channel of the map and where its value lies in the call's rows.
     struct Part {
         std::string name;
         pointcloud::ChannelType type;
@@ -28,6 +29,7 @@ struct CloudSite {
     bool addsArea = false;         ///< bake3d() without "_area": appends that channel
 };
 
+/// Reads the arguments of a call site.
 std::shared_ptr<const CloudSite> cloudSite(const SiteInfo&, const rsl::CompiledKernel&, const WorldImpl&);
 
 } // namespace alpenglow::world

@@ -12,6 +12,7 @@ namespace alpenglow::world {
 
 struct BoundLight;
 
+/// The maps of one world. Lookups and baking are thread safe; setting up and writing are not.
 class CloudStore {
 public:
     CloudStore(MapFiles files, Diagnostics& d) : files_(std::move(files)), diagnostics_(d) {}
@@ -34,6 +35,7 @@ public:
     bool bakes = false, centres = false;
     /// Whether to record which lights run: a few points decide whether a primitive bakes, but only for lights that ran there.
     bool notesLights = false;
+    /// Adds to lightsRan: one light, or all of a LightGroup.
     void noteLights(const BoundLight& first, std::span<const BoundLight* const> all);
     std::set<const BoundLight*> lightsRan;
 

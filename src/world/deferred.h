@@ -9,8 +9,10 @@
 
 namespace alpenglow::world {
 
+/// All bounds of a world, in a tree, and which of them rays have reached.
 class DeferredBounds {
 public:
+    /// The bound of one procedural.
     struct Bound {
         geometry::Bounds box; ///< camera space, over the shutter interval
 

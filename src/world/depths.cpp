@@ -16,12 +16,12 @@ bool hasEffects(const BoundKernel& k) {
 
 bool depthsNeedNoShaders(const World& world) {
     const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of other folders use their own World
-    if (!w || !w->allOpaque_ || !w->media_.empty() || !w->clippingPlanes_.empty() || hasDeferred(world) || bakes(world))
+    if (!w || !w->allOpaque() || !w->media().empty() || !w->clippingPlanes().empty() || hasDeferred(world) || bakes(world))
         return false;
-    for (const SurfaceBinding& b : w->bindings_)
+    for (const SurfaceBinding& b : w->bindings())
         for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV, &b.displacementS, &b.atmosphere.kernel})
             if (hasEffects(*k)) return false;
-    for (const BoundLight& l : w->lights_) {
+    for (const BoundLight& l : w->lights()) {
         if (hasEffects(l.kernel)) return false;
         for (const auto& [strings, k] : l.variants)
             if (hasEffects(k)) return false;

@@ -5,7 +5,7 @@
 #include "rsl/ir/edit.h"
 #include "rsl/moves.h"
 #include "scene/scene.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 #include "world/turned.h"
 
 namespace alpenglow::world {
@@ -48,8 +48,8 @@ bool isKnownEarly(const BoundLight& l, bool path) {
 
 } // namespace
 
-BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKernel& bound, const scene::LightSet& lights,
-                                    const std::vector<std::string>& varying, Diagnostics& d) {
+BoundKernel MutableWorld::movingKernel(const ShaderInstance& surface, const BoundKernel& bound, const scene::LightSet& lights,
+                                       const std::vector<std::string>& varying, Diagnostics& d) {
     const bool path = settings_.hider == Hider::Path;
     const auto& writes = bound.kernel->facts().writes;
     if (std::find(writes.begin(), writes.end(), "P") == writes.end()) return {};
@@ -87,8 +87,8 @@ BoundKernel WorldImpl::movingKernel(const ShaderInstance& surface, const BoundKe
     return moving;
 }
 
-void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& shape, geometry::DiceGrid& grid,
-                             Diagnostics& d) const {
+void MutableWorld::displaceGrid(const SurfaceBinding& b, const geometry::Shape& shape, geometry::DiceGrid& grid,
+                                Diagnostics& d) const {
     const BoundKernel& bound = b.displacement ? b.displacementS : b.moveS;
     if (!bound || bound.kernel->facts().suspends) return;
     const ShaderInstance& shader = b.displacement ? *b.displacement : *b.surface;
@@ -112,7 +112,7 @@ void WorldImpl::displaceGrid(const SurfaceBinding& b, const geometry::Shape& sha
 }
 
 /// Whether points of this shape differ from the primitive's, for a binding.
-bool WorldImpl::movesPoints(const SurfaceBinding& b, const geometry::Shape& shape) const {
+bool MutableWorld::movesPoints(const SurfaceBinding& b, const geometry::Shape& shape) const {
     if (!b.displacement) return bool(b.moveS);
     if (!b.displacementS || b.displacementS.kernel->facts().suspends) return true;
     const auto& writes = b.displacementS.kernel->facts().writes;
@@ -125,7 +125,7 @@ bool WorldImpl::movesPoints(const SurfaceBinding& b, const geometry::Shape& shap
                             shader.parameters.numbers);
 }
 
-void WorldImpl::diceShapes(Diagnostics& d) {
+void MutableWorld::diceShapes(Diagnostics& d) {
     geometry::DiceOptions dice;
     dice.camera = geometry::DiceCamera::from(frame_->options);
     dice.stop = settings_.stop;

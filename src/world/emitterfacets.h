@@ -8,6 +8,7 @@ namespace alpenglow::world {
 
 /// Where rays hit a point of an emitter: on its facet if it is diced.
 inline const Vec3& intersectsAt(const geometry::SurfacePoint& p) { return p.facet != geometry::kNone ? p.displacedP : p.P; }
+/// The normal of the surface there, unit.
 inline const Vec3& intersectsNormal(const geometry::SurfacePoint& p) { return p.facet != geometry::kNone ? p.displacedN : p.n; }
 /// Origin of a ray along dir, or end of a ray against dir: offset from the surface that rays hit.
 inline Vec3 leavesFrom(const geometry::SurfacePoint& p, const Vec3& dir) {

@@ -23,6 +23,7 @@ public:
     /// Valid as long as this object.
     Tally& of(const SourcePlace& call, const std::string& shadeop, const geometry::Shape&);
 
+    /// The calls of which that is true on some primitive. Call while no thread traces.
     std::vector<World::FlippedNormalsCall> blocked() const;
 
 private:

@@ -114,7 +114,7 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, const WorldImpl& 
         const rsl::Place& at = i.site->place;
         const SourcePlace place{at.file >= 0 && at.file < int(k.files().size()) ? k.files()[size_t(at.file)] : "", at.line,
                                 at.column};
-        world.diagnostics_->reportOnce("gather:" + what + place.file + std::to_string(place.line),
+        world.diagnostics().reportOnce("gather:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::BadToken, place, "gather: " + what, hint, {}});
     };
     for (SiteInfo& i : b.sites) {
@@ -149,8 +149,8 @@ void linkGathers(BoundKernel& b, const rsl::CompiledKernel& k, const WorldImpl& 
             const rsl::Place& at = i.site->place;
             const SourcePlace place{at.file >= 0 && at.file < int(k.files().size()) ? k.files()[size_t(at.file)] : "", at.line,
                                     at.column};
-            const auto map = world.textures_->open(category.substr(kSky.size()), world.settings_.texturePaths, place);
-            g->sky = &world.skyMaps_.of(map, world.textures_->latLong());
+            const auto map = world.textures().open(category.substr(kSky.size()), world.settings().texturePaths, place);
+            g->sky = &world.skyMaps().of(map, world.textures().latLong());
         } else if (!category.empty() && category != "illuminance") {
             warn(i, "the category \"" + category + "\" is not known; \"illuminance\" is used",
                  "illuminance, samplepattern, environment:MAP");

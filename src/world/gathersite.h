@@ -7,6 +7,7 @@
 
 namespace alpenglow::world {
 
+/// One gather(): what its rays ask of what they hit, and where the answers go.
 struct GatherSite {
     enum class Category : uint8_t { Rays, Directions, Sky };
     /// The source of an output's value.
@@ -48,6 +49,7 @@ struct GatherSite {
         int elements;       ///< at most
     };
     std::vector<Sent> sent;
+    /// Whether values are sent to shaders of that kind.
     bool sendsTo(rsl::PairName::To to) const {
         return std::any_of(sent.begin(), sent.end(), [to](const Sent& s) { return s.to == to; });
     }

@@ -1,6 +1,6 @@
 // Homogeneous scattering media: parameters from outputs of volume shaders.
 #include "base/exact.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 #include "world/outputs.h"
 
 namespace alpenglow::world {
@@ -35,7 +35,7 @@ Color Homogeneous::left(float way) const {
     return t;
 }
 
-void WorldImpl::bindHomogeneous(Medium& m, Evaluator& evaluator, Diagnostics& d) {
+void MutableWorld::bindHomogeneous(Medium& m, Evaluator& evaluator, Diagnostics& d) {
     const ShaderInstance& shader = *m.shader;
     std::vector<std::string> names, outputs;
     for (const char* name : {"__absorption", "__scattering", "__emission"})
@@ -89,7 +89,7 @@ void WorldImpl::bindHomogeneous(Medium& m, Evaluator& evaluator, Diagnostics& d)
     m.homogeneous = std::make_shared<Homogeneous>(h);
 }
 
-void WorldImpl::placeLights(Evaluator& evaluator) {
+void MutableWorld::placeLights(Evaluator& evaluator) {
     if (!scatters_) return;
     for (BoundLight& l : lights_) {
         if (l.kind == LightKind::Area && l.kernel && l.emitter && !l.emitter->empty() && !l.mean && !l.asksSurface &&

@@ -1,18 +1,16 @@
 // Runs the imager of a frame over finished pixels.
 #include "scene/scene.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 #include <algorithm>
 
 namespace alpenglow::world {
 
-void WorldImpl::bindImager(Diagnostics& d) {
+void MutableWorld::bindImager(Diagnostics& d) {
     const scene::ShaderRef& imager = frame_->options.imager;
     if (!imager) return;
     InstanceRef shader = instance(*imager, rsl::ShaderKind::Imager, d);
     if (const scene::AttributesRef& a = frame_->options.attributes) shader = withCoShaders(shader, a->coshaders, d);
-    const KernelNeeds ofRays = needs_;
-    if (shader) imager_.kernel = kernel(*shader, {}, {}, false, false, d);
-    needs_ = ofRays;
+    if (shader) imager_.kernel = kernelWithoutRays(*shader, {}, {}, false, false, d);
     imager_.shader = std::move(shader);
 }
 

@@ -1,4 +1,4 @@
-// Implementation of World for its users inside of the renderer: shapes, shaders and lights with their bindings.
+// Implementation of World for its users inside of the renderer: shapes, shaders and lights with their bindings, to be read.
 #pragma once
 #include "rsl/passes/optimize.h"
 #include "rsl/printlog.h"
@@ -35,135 +35,40 @@ private:
 class CloudStore; // world/cloudstore.h
 class PtexStore;  // world/ptexstore.h
 
-class WorldImpl final : public World, public shading::SpaceResolver {
+/// A world as kernels, rays and services read it. Nothing of it changes after World::build(): MutableWorld (mutableworld.h) has
+/// what builds it. Thread safe. Spaces and bounds are those of camera space at shutter open.
+class WorldImpl : public World, public shading::SpaceResolver {
 public:
-    const scene::Frame& frame() const override { return *frame_; }
-    const Settings& settings() const override { return settings_; }
-    Facts facts() const override { return facts_; }
-    std::vector<MapRead> mapsRead() const override;
-    PhotonStore* photons() const override { return photons_.get(); }
-    std::vector<int> outputWidths() const override { return outputWidths_; }
-    std::vector<std::string> missingOutputs() const override { return missingOutputs_; }
-    std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const override;
-    std::vector<FlippedNormalsCall> callsTurnedAway() const override { return turnedAway_.blocked(); }
-    NamedMedium medium(size_t) const override;
-    std::vector<std::string> knownOutputs() const override;
-    void flushPrints(bool keep) const override { keep ? prints_.flush() : prints_.discard(); }
-    bool interpolates() const override { return needs_.records; }
-    size_t keepRecords() const override { return records_.keep(); }
+    const scene::Frame& frame() const final { return *frame_; }
+    const Settings& settings() const final { return settings_; }
+    Facts facts() const final { return facts_; }
+    std::vector<MapRead> mapsRead() const final;
+    PhotonStore* photons() const final { return photons_.get(); } ///< changes between passes only, while no thread traces
+    std::vector<int> outputWidths() const final { return outputWidths_; }
+    std::vector<std::string> missingOutputs() const final { return missingOutputs_; }
+    std::vector<std::pair<std::string, SourcePlace>> cloudsFoundEmpty() const final;
+    std::vector<FlippedNormalsCall> callsTurnedAway() const final { return turnedAway_.blocked(); }
+    NamedMedium medium(size_t) const final;
+    std::vector<std::string> knownOutputs() const final;
+    void flushPrints(bool keep) const final { keep ? prints_.flush() : prints_.discard(); }
+    bool interpolates() const final { return needs_.records; }
+    size_t keepRecords() const final { return records_.keep(); }
     bool runImager(int, const float*, const float*, float*, float*, float*, float*, Diagnostics&,
-                   const StopFlag* stop) const override;
-    bool matrix(const std::string& from, const std::string& to, Matrix& out) const override;
-    /// Computes the matrices of a kernel's spaces once, before the first ray, so that matrix() finds them in the table.
-    void keepSpaces(std::span<const rsl::InputName> spaces);
-    std::map<std::string, std::map<std::string, Matrix>> spaces_; ///< from, to
+                   const StopFlag* stop) const final;
+
+    // Spaces and time
+    bool matrix(const std::string& from, const std::string& to, Matrix& out) const final;
     /// Whether a space is predefined or defined by the scene.
     bool knowsSpace(const std::string& name) const;
-
-    InstanceRef instance(const scene::ShaderCall&, rsl::ShaderKind, Diagnostics&, bool anyKind = false);
-    void setParameters(ShaderInstance&, const scene::ShaderCall&, Diagnostics&);
-    void takeValues(ShaderInstance&, const std::vector<rsl::ParameterValue>& given, Diagnostics&);
-    /// Sets handles among these parameters to null that name neither one of `bound` nor a light, and reports an error with its
-    /// place.
-    void dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
-                            const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics&) const;
-    /// An instance with the co-shaders of these attributes and, from these lights (indices in Frame::lights), the class lights
-    /// with methods that it calls. Returns the instance itself if it uses no co-shaders.
-    InstanceRef withCoShaders(const InstanceRef&, const std::map<std::string, scene::ShaderRef>& coshaders, Diagnostics&,
-                              const scene::LightSet& lights = {});
-    /// Fills outputWidths_: number of components of each AOV in the shaders of the frame.
-    void measureOutputs();
-    InstanceRef builtin(const std::string& name, rsl::ShaderKind, Diagnostics&);
-    rsl::KernelOptions kernelOptions(const ShaderInstance&, const std::vector<std::string>& outputs,
-                                     const std::vector<std::string>& varying, bool mixed, bool path) const;
-    BoundKernel kernel(const ShaderInstance&, const std::vector<std::string>& outputs, const std::vector<std::string>& varying,
-                       bool mixed, bool path, Diagnostics&, const std::string& light = "Ci");
-    /// Warns if a shader divides by a parameter that is 0.
-    void sayZeroDivisions(const ShaderInstance&, const rsl::KernelOptions&, Diagnostics&);
-    std::set<std::string> zeroDivisors_; ///< shaders, calls and parameters already checked
-    /// Which outputs of an instance's kernel() receive requested light.
-    std::vector<rsl::ir::OutputLight> lightOfOutputs(const ShaderInstance&, const std::vector<std::string>& outputs,
-                                                     const std::vector<std::string>& varying, bool path) const;
-
-    /// Sets what every world has: the frame, settings, services, camera, and the stores of maps, which are opened at first use.
-    void begin(std::shared_ptr<const scene::Frame>, const Settings&, ServiceTable, Diagnostics&);
-    /// Computes camera matrices from the frame's options.
-    void setCamera(const scene::Options&);
-    /// For a bound surface shader that assigns P: the kernel that computes P alone, run at dicing. None if the shader leaves P
-    /// unchanged, or if P depends on rays or on lights that cannot be evaluated then; the latter is reported.
-    BoundKernel movingKernel(const ShaderInstance&, const BoundKernel&, const scene::LightSet&,
-                             const std::vector<std::string>& varying, Diagnostics&);
-    /// Fills numberOfShape_ and moves_.
-    void numberShapes();
-    /// Makes the meshes that rays hit.
-    void diceShapes(Diagnostics&);
-    bool movesPoints(const SurfaceBinding&, const geometry::Shape&) const;
-    /// Whether no shader or light sends rays or needs points of complete surfaces, so that only camera rays exist. Call after
-    /// binding surfaces.
-    bool onlyCameraRays() const;
-    /// Sets pointNeeds of lights and bindings, after all kernels are bound.
-    void setPointNeeds();
-    void displaceGrid(const SurfaceBinding&, const geometry::Shape&, geometry::DiceGrid&, Diagnostics&) const;
-    /// photons: with the outputs of generatePhoton().
-    BoundKernel lightKernel(const ShaderInstance&, bool photons, Diagnostics&);
-    void bindPhotons(BoundLight&, Diagnostics&);
-    void bindLightOutputs(BoundLight&, int block);
-    /// Fills lights_; visibility: kinds of rays that can hit a shape.
-    void bindLights(Diagnostics&, const std::function<uint32_t(const geometry::Shape&)>& visibility);
-    /// Adds to a list of the scene's lights the further blocks of their shaders.
-    scene::LightSet withParts(const scene::LightSet& lights) const;
-    /// Calls f for each light of such a list, all blocks of a shader in turn, until f returns true.
-    template <class F> void eachLight(const scene::LightSet& lights, F&& f) const {
-        for (const int l : lights) {
-            if (size_t(l) >= sceneLights_) return; // the rest are parts, visited with their shader's first block
-            if (f(l)) return;
-            for (const int part : lights_[size_t(l)].parts)
-                if (f(part)) return;
-        }
-    }
-    /// Builds light kernels for the strings that loops of surfaces send. Call after all surfaces are bound.
-    void bindSentStrings(Diagnostics&);
-    /// Estimates the brightness of lights, and finds area lights whose Cl is an intensity. Call after everything else.
-    void measureLights(Evaluator&, Diagnostics&);
-    /// Attenuation of shadow rays by a shape. `mode`: "shader", "primitive", "opaque" or "Os"; "": by attributes.
-    Opacity opacityOf(const SurfaceBinding&, const geometry::Shape&, std::string mode, const std::vector<std::string>& varying,
-                      Evaluator&, Diagnostics&);
-    /// Fills choosers_ and, if there are many lights, lightGroups_; after measureLights().
-    void makeChoosers(Diagnostics&);
-    void groupLights(Diagnostics&);
-
-    std::shared_ptr<const scene::Frame> frame_;
-    size_t sceneLights_ = 0;   ///< lights of frame_; later entries of lights_ are further blocks of their shaders
-    MakeEvaluator evaluators_; ///< also used by the imager
-    Settings settings_;
-    ServiceTable services_;                                         ///< of services/, above this folder
-    bool rispecSpecular_ = false;                                   ///< specular() uses RISpec's exponent (shadeops/specular.h)
-    std::map<const scene::ShaderCall*, InstanceRef> coShaders_;     ///< one instance for each request
-    std::map<std::vector<const void*>, InstanceRef> withCoShaders_; ///< by shader, then the requests of its co-shaders
-    Facts facts_;
-    std::vector<geometry::ShapeRef> shapes_;
-    /// Index in shapes_; for an instanced geometry, its first instance.
-    std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_;
-    /// Random number key of a shape: its index, or with deferred procedurals a number that does not depend on which were
-    /// expanded.
-    uint32_t keyOfShape(uint32_t shape) const { return keysOfShapes_.empty() ? shape : keysOfShapes_[shape]; }
-    std::vector<uint32_t> keysOfShapes_;       ///< empty: indices are used
-    std::unique_ptr<DeferredBounds> deferred_; ///< null: no deferred procedurals
-    geometry::Bounds procedurals_;             ///< around all deferred procedurals, expanded or not
-    void findProcedurals();                    ///< fills deferred_ and procedurals_
-    /// Bounding box of everything, independent of which procedurals were expanded.
-    geometry::Bounds bounds() const {
-        geometry::Bounds b = accel_->bounds();
-        b.add(procedurals_);
-        return b;
-    }
-    scene::Shutter shutter_;
-    bool moves_ = false;        ///< some shape moves
-    bool shadesAtOpen_ = false; ///< surfaces are shaded, and send rays, at shutter open
+    const Matrix& worldToCamera() const { return worldToCamera_; }
+    const Matrix& cameraToWorld() const { return cameraToWorld_; }
+    const scene::Shutter& shutter() const { return shutter_; }
+    bool shadesAtOpen() const { return shadesAtOpen_; } ///< surfaces are shaded, and send rays, at shutter open
+    /// The shader variable `time`, in units of the scene, at a fraction of the open shutter.
     float timeAt(float shutter) const { return float(shutter_.at(double(shutter))); }
     /// Sets time and dtime of a point from its shutter position: the whole shutter if surfaces are shaded at open, else an
     /// instant.
-    void tellTime(shading::ShadePoint& p) const {
+    void setTime(shading::ShadePoint& p) const {
         p.time = timeAt(p.shutter);
         p.dtime = shadesAtOpen_ && shutter_.opens() ? float(shutter_.close - shutter_.open) : 0;
     }
@@ -173,63 +78,47 @@ public:
     Vec3 pointsVelocity(const geometry::Shape& s, const geometry::SurfacePoint& p) const {
         return shutter_.opens() ? s.velocity(p) / float(shutter_.close - shutter_.open) : Vec3(0.f);
     }
-    bool traceSubsets_ = false;  ///< some shape has Attribute "grouping" "tracesubset"
-    std::vector<int> bindingOf_; ///< by shape: index in bindings_
-    std::vector<SurfaceBinding> bindings_;
-    std::vector<Medium> media_; ///< of Interior and Exterior
-    shading::Media eye_;        ///< media at the eye
-    bool scatters_ = false;     ///< some of media_ scatter
-    void findEye();             ///< fills eye_; requires the acceleration structure
-    /// Reads the parameters of a homogeneous medium from its shader's outputs.
-    void bindHomogeneous(Medium&, Evaluator&, Diagnostics&);
-    void placeLights(Evaluator&);                    ///< finds positions of lights for sampling in media; call last
+    float clipNear() const { return clipNear_; } ///< of the request Clipping, for depth()
+    float clipFar() const { return clipFar_; }
+    /// A point and a normal each; camera rays see nothing on the side of the normal.
+    const std::vector<std::pair<Vec3d, Vec3d>>& clippingPlanes() const { return clippingPlanes_; }
+
+    // Shapes
+    const std::vector<geometry::ShapeRef>& shapes() const { return shapes_; }
+    /// Index in shapes(); for an instanced geometry, its first instance.
+    const std::unordered_map<const geometry::Shape*, uint32_t>& numberOfShape() const { return numberOfShape_; }
+    /// Random number key of a shape: its index, or with deferred procedurals a number that does not depend on which were
+    /// expanded.
+    uint32_t keyOfShape(uint32_t shape) const { return keysOfShapes_.empty() ? shape : keysOfShapes_[shape]; }
+    /// Whether rays can be traced: false while shaders and lights are bound, when kernels already run.
+    bool canTrace() const { return accel_ != nullptr; }
+    const accel::Accel& accel() const { return *accel_; }              ///< requires canTrace()
+    const DeferredBounds* deferred() const { return deferred_.get(); } ///< null: no deferred procedurals
+    /// Bounding box of everything, independent of which procedurals were expanded.
+    geometry::Bounds bounds() const {
+        geometry::Bounds b = accel_->bounds();
+        b.add(procedurals_);
+        return b;
+    }
+    bool moves() const { return moves_; }               ///< some shape moves
+    bool fades() const { return fades_; }               ///< some shape fades between levels of detail
+    bool traceSubsets() const { return traceSubsets_; } ///< some shape has Attribute "grouping" "tracesubset"
+    const ShapeSubsets& subsets() const { return subsets_; }
     void goOn(accel::Ray&, const accel::Hit&) const; ///< continues a ray behind its hit
-    int groups_ = 0;                                 ///< number of distinct SurfaceBinding::group
-    std::vector<BoundLight> lights_;
-    std::vector<uint8_t> shining_; ///< by shape: an area light that rays can hit
-    void findShining();            ///< fills shining_, which is not empty
-    std::unique_ptr<accel::Accel> accel_;
-    Matrix worldToCamera_, cameraToWorld_;
-    Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;
-    std::vector<rsl::OutputName> wanted_; ///< Settings::outputs
-    std::vector<int> outputWidths_;
-    std::vector<std::string> missingOutputs_;
-    /// All shaders that may write an output.
-    std::set<const ShaderInstance*> givers() const;
-    std::vector<LightOutputPlace> lightOutputs_;
-    std::unique_ptr<texture::TextureSystem> textures_;
-    std::shared_ptr<rsl::ShaderCompiler> compiler_;
-    Diagnostics* diagnostics_ = nullptr;
-    mutable rsl::PrintLog prints_;
-    texture::IrradianceTables irradiance_;
-    texture::SkyDirectionTables skyMaps_;
-    std::shared_ptr<PhotonStore> photons_; ///< changes between passes only, while no thread traces
-    std::shared_ptr<CloudStore> clouds_;   ///< point clouds, and baked data; thread safe
-    std::shared_ptr<PtexStore> ptex_;      ///< Ptex files; thread safe
-    mutable FlippedNormals turnedAway_;
-    bool globalMaps_ = false; ///< some surface has a global photon map that an indirectdiffuse() may use
-    mutable LightRecords records_;
-    KernelNeeds needs_; ///< of all kernels, joined by kernel()
-    struct BoundImager {
-        InstanceRef shader;
-        BoundKernel kernel;
-    };
-    BoundImager imager_; ///< null if the frame has none
-    /// Compiles it and sets imager_. Its points are pixels, so its needs are not added to needs_.
-    void bindImager(Diagnostics&);
-    bool built_ = false;                     ///< threads may read the world
-    std::vector<std::string> lightMessages_; ///< parameters of surfaces that lights and atmospheres query, sorted
-    std::set<std::string>
-        lightDisplacements_; ///< outputs of displacement shaders that lights query; "": names computed at run time
-    bool lightsAsk_ = false; ///< some light queries the surface that it lights (BoundLight::asksSurface)
-    bool lightsAsk() const { return lightsAsk_; }
-    int maxDepth_ = 32;
-    /// Largest number of trace() calls by lights at a shaded point, approximate: limits::kLightsSampled lights for each light
-    /// loop and lighting shadeop of a surface.
-    int lightTraces_ = 0;
-    void countLightTraces();
-    bool lightChannels_ = false; ///< lights write AOVs by outputchannel()
-    bool allOpaque_ = true;      ///< no opacity below 1: shadow rays run no shaders
+
+    // Surfaces
+    const std::vector<int>& bindingOf() const { return bindingOf_; } ///< by shape: index in bindings()
+    const std::vector<SurfaceBinding>& bindings() const { return bindings_; }
+    int groups() const { return groups_; } ///< number of distinct SurfaceBinding::group
+    const BoundKernel& primitiveHit() const {
+        return primitiveHit_;
+    } ///< shows primitives by Color and Opacity; set only if rays can request it
+    const KernelNeeds& needs() const { return needs_; } ///< of all kernels, joined
+    int maxDepth() const { return maxDepth_; }          ///< bounces of a path
+    bool globalMaps() const { return globalMaps_; } ///< some surface has a global photon map that an indirectdiffuse() may use
+
+    // Opacity
+    bool allOpaque() const { return allOpaque_; } ///< no opacity below 1: shadow rays run no shaders
     /// Otherwise, by shape, subsets for rays without a "hitmode": shapes that block all light, and the others with their bounding
     /// box.
     struct ByOpacity {
@@ -238,7 +127,8 @@ public:
         /// If few, the other shapes alone, with the index of each in this structure; else null.
         std::unique_ptr<accel::Accel> few;
         std::vector<uint32_t> numbers;
-    } byOpacity_;
+    };
+    const ByOpacity& byOpacity() const { return byOpacity_; }
     /// Surfaces that shadow rays and rays of lobes see differently. Between such a pair only one technique finds a light, so it
     /// gets all of the weight of multiple importance sampling: the shadow ray (docs/design/light-transport.md).
     struct ShadowVisibility {
@@ -246,49 +136,162 @@ public:
         std::vector<uint8_t> shadowsOnly[2]; ///< by shape: shadow rays alone hit it; of diffuse and of specular rays; empty: none
         bool opacity = false;                ///< some Opacity::differs
         bool differs() const { return lobesOnly || opacity || !shadowsOnly[0].empty() || !shadowsOnly[1].empty(); }
-    } shadowVisibility_;
-    /// Fills it; `visibility`: kinds of rays that hit a shape, by shape.
-    void findShadowVisibility(std::span<const uint32_t> visibility);
-    bool mediaOverrule_ = false; ///< media differ in priority: inside some, surfaces are no boundaries and stop no ray
-    void sortByOpacity(std::span<const uint32_t> visibility);
-    /// Sets the photon visibility of surfaces; `visibility`: ray visibility, by shape. Defined in photonattributes.cpp.
-    void bindPhotons(std::span<const uint32_t> visibility);
-    bool fades_ = false;       ///< some shape fades between levels of detail
-    BoundKernel primitiveHit_; ///< shows primitives by Color and Opacity; set only if rays can request it
-    ShapeSubsets subsets_;
+    };
+    const ShadowVisibility& shadowVisibility() const { return shadowVisibility_; }
+
+    // Media
+    const std::vector<Medium>& media() const { return media_; } ///< of Interior and Exterior
+    const shading::Media& eye() const { return eye_; }          ///< media at the eye
+    bool scatters() const { return scatters_; }                 ///< some of media() scatter
+    bool mediaOverrule() const {
+        return mediaOverrule_;
+    } ///< media differ in priority: inside some, surfaces are no boundaries and stop no ray
+
+    // Lights
+    const std::vector<BoundLight>& lights() const {
+        return lights_;
+    } ///< those of the frame, then further blocks of their shaders
+    /// Calls f for each light of a list of the scene's, all blocks of a shader in turn, until f returns true.
+    template <class F> void eachLight(const scene::LightSet& lights, F&& f) const {
+        for (const int l : lights) {
+            if (size_t(l) >= sceneLights_) return; // the rest are parts, visited with their shader's first block
+            if (f(l)) return;
+            for (const int part : lights_[size_t(l)].parts)
+                if (f(part)) return;
+        }
+    }
+    const std::vector<uint8_t>& shining() const { return shining_; } ///< by shape: an area light that rays can hit; never empty
+    const std::vector<int>& skies() const { return skies_; } ///< lights that escaped rays see: kinds Environment and Ambient
+    /// Emitters in an atmosphere, to their binding.
+    const std::unordered_map<const geometry::Shape*, int>& emittersInAtmosphere() const { return emittersInAtmosphere_; }
+    bool lightsAsk() const { return lightsAsk_; } ///< some light queries the surface that it lights (BoundLight::asksSurface)
+    /// Largest number of trace() calls by lights at a shaded point, approximate: limits::kLightsSampled lights for each light
+    /// loop and lighting shadeop of a surface.
+    int lightTraces() const { return lightTraces_; }
     /// A list of lights that surfaces share.
     struct LightList {
         scene::LightSet lights;
-        /// Sampled lights, in order. With `ofAll` it is empty: they are those of allSampled_ that are in `lights`.
+        /// Sampled lights, in order. With `ofAll` it is empty: they are those of all lists that are in `lights`.
         std::vector<int> sampled;
         LightChooser chooser; ///< over `sampled`; empty if every light is sampled at every vertex
         LightChooser deeper;  ///< for later vertices of a path, where fewer are sampled; empty if `chooser` is
         bool ofAll = false;
     };
-    std::vector<LightList> lightLists_; ///< by SurfaceBinding::lightList
-    /// If the lists would be too large together, the later ones share one list and its chooser.
-    std::vector<int> allSampled_;
-    LightChooser allChooser_, allDeeper_;
-    size_t listed_ = 0; ///< total size of LightList::sampled
-    bool getsSamples(const BoundLight&) const;
+    const std::vector<LightList>& lightLists() const { return lightLists_; } ///< by SurfaceBinding::lightList
+    /// The sampled lights of a list; with `ofAll` those of all lists.
     const std::vector<int>& sampledOf(const LightList& l) const { return l.ofAll ? allSampled_ : l.sampled; }
+    /// The chooser over them; empty: every light is sampled.
     const LightChooser& chooserOf(const LightList& l) const { return l.ofAll ? allChooser_ : l.chooser; }
     /// The chooser for a vertex after so many bounces; empty: every light is sampled.
     const LightChooser& chooserAt(const LightList& l, int bounces) const {
         return bounces == 0 ? chooserOf(l) : l.ofAll ? allDeeper_ : l.deeper;
     }
-    std::vector<int> skies_; ///< lights that escaped rays see: kinds Environment and Ambient
-    /// Builds the tables of skies (BoundLight::sky). Call before binding surfaces.
-    void tabulateSkies(Evaluator&);
     /// Lights of one program that share a kernel call, for points that query different ones.
     struct LightGroup {
         BoundKernel kernel;
     };
+    const std::vector<LightGroup>& lightGroups() const { return lightGroups_; } ///< by BoundLight::group
+
+    // Outputs
+    const std::vector<rsl::OutputName>& wanted() const { return wanted_; }    ///< Settings::outputs
+    const std::vector<int>& widthsOfOutputs() const { return outputWidths_; } ///< outputWidths(), without a copy
+    const std::vector<LightOutputPlace>& lightOutputs() const { return lightOutputs_; }
+
+    // Services
+    ServiceTable services() const { return services_; }
+    bool rispecSpecular() const { return rispecSpecular_; } ///< specular() uses RISpec's exponent (shadeops/specular.h)
+    bool built() const { return built_; } ///< false while kernels run for the build itself: what they find is not kept
+    Diagnostics& diagnostics() const { return *diagnostics_; } ///< of the build; thread safe
+    texture::TextureSystem& textures() const { return *textures_; }
+    const texture::IrradianceTables& irradiance() const { return irradiance_; }
+    const texture::SkyDirectionTables& skyMaps() const { return skyMaps_; }
+    CloudStore& clouds() const { return *clouds_; } ///< point clouds, and baked data; thread safe
+    PtexStore& ptex() const { return *ptex_; }      ///< Ptex files; thread safe
+    rsl::PrintLog& prints() const { return prints_; }
+    FlippedNormals& turnedAway() const { return turnedAway_; }
+    LightRecords& records() const { return records_; }
+
+protected:
+    WorldImpl() = default;
+    /// All shaders that may write an output.
+    std::set<const ShaderInstance*> givers() const;
+
+    std::shared_ptr<const scene::Frame> frame_;
+    MakeEvaluator evaluators_; ///< of the build, and for the imager
+    Settings settings_;
+    ServiceTable services_; ///< of services/, above this folder
+    bool rispecSpecular_ = false;
+    bool built_ = false;
+    Facts facts_;
+    Diagnostics* diagnostics_ = nullptr;
+
+    std::map<std::string, std::map<std::string, Matrix>> spaces_; ///< from, to: those that kernels read, computed once
+    Matrix worldToCamera_, cameraToWorld_;
+    Matrix cameraToScreen_, screenToNdc_, ndcToRaster_;
+    scene::Shutter shutter_;
+    bool shadesAtOpen_ = false;
+    float clipNear_ = 0, clipFar_ = 1;
+    std::vector<std::pair<Vec3d, Vec3d>> clippingPlanes_;
+
+    std::vector<geometry::ShapeRef> shapes_;
+    std::unordered_map<const geometry::Shape*, uint32_t> numberOfShape_;
+    std::vector<uint32_t> keysOfShapes_; ///< empty: indices are used
+    std::unique_ptr<accel::Accel> accel_;
+    std::unique_ptr<DeferredBounds> deferred_;
+    geometry::Bounds procedurals_; ///< around all deferred procedurals, expanded or not
+    bool moves_ = false, fades_ = false, traceSubsets_ = false;
+    ShapeSubsets subsets_;
+
+    std::vector<int> bindingOf_;
+    std::vector<SurfaceBinding> bindings_;
+    int groups_ = 0;
+    BoundKernel primitiveHit_;
+    KernelNeeds needs_;
+    int maxDepth_ = 32;
+    bool globalMaps_ = false;
+
+    bool allOpaque_ = true;
+    ByOpacity byOpacity_;
+    ShadowVisibility shadowVisibility_;
+
+    std::vector<Medium> media_;
+    shading::Media eye_;
+    bool scatters_ = false, mediaOverrule_ = false;
+
+    size_t sceneLights_ = 0; ///< lights of frame_; later entries of lights_ are further blocks of their shaders
+    std::vector<BoundLight> lights_;
+    std::vector<uint8_t> shining_;
+    std::vector<int> skies_;
+    std::unordered_map<const geometry::Shape*, int> emittersInAtmosphere_;
+    bool lightsAsk_ = false;
+    bool lightChannels_ = false; ///< lights write AOVs by outputchannel()
+    int lightTraces_ = 0;
+    std::vector<LightList> lightLists_;
+    /// If the lists would be too large together, the later ones share one list and its chooser.
+    std::vector<int> allSampled_;
+    LightChooser allChooser_, allDeeper_;
     std::vector<LightGroup> lightGroups_;
-    std::unordered_map<const geometry::Shape*, int> emittersInAtmosphere_; ///< emitters in an atmosphere, to their binding
-    float clipNear_ = 0, clipFar_ = 1;                                     ///< of the request Clipping, for depth()
-    std::vector<std::pair<Vec3d, Vec3d>>
-        clippingPlanes_; ///< camera space point, normal; camera rays see nothing on the side of the normal
+
+    std::vector<rsl::OutputName> wanted_;
+    std::vector<int> outputWidths_;
+    std::vector<std::string> missingOutputs_;
+    std::vector<LightOutputPlace> lightOutputs_;
+    struct BoundImager {
+        InstanceRef shader;
+        BoundKernel kernel;
+    };
+    BoundImager imager_; ///< null if the frame has none
+
+    std::unique_ptr<texture::TextureSystem> textures_;
+    texture::IrradianceTables irradiance_;
+    texture::SkyDirectionTables skyMaps_;
+    std::shared_ptr<PhotonStore> photons_;
+    std::shared_ptr<CloudStore> clouds_;
+    std::shared_ptr<PtexStore> ptex_;
+    // What running kernels leave behind, from many threads: no kernel of the same pass reads it, so no bit depends on the order.
+    mutable rsl::PrintLog prints_;      ///< until flushPrints()
+    mutable FlippedNormals turnedAway_; ///< for callsTurnedAway()
+    mutable LightRecords records_;      ///< a cache of irradiance; kernels read those of earlier passes
 };
 
 /// The world of no scene: an empty frame with the default camera and no shapes, lights or shaders. For services of shaders that
@@ -299,7 +302,7 @@ std::shared_ptr<const WorldImpl> emptyWorld(const Settings&, ServiceTable, Diagn
 template <class Place> texture::Handle TextureSite::map(const WorldImpl& world, Place&& place) const {
     if (!opened_.load(std::memory_order_acquire)) {
         if (!name.empty())
-            map_.store(world.textures_->open(name, world.settings_.texturePaths, place()), std::memory_order_relaxed);
+            map_.store(world.textures().open(name, world.settings().texturePaths, place()), std::memory_order_relaxed);
         opened_.store(true, std::memory_order_release);
     }
     return map_.load(std::memory_order_relaxed);

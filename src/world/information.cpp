@@ -54,7 +54,7 @@ std::optional<Information> shaderBound(const SurfaceBinding& b, bool space) {
 std::optional<Information> coordinateSystem(const WorldImpl& w, const std::string& name) {
     const auto i = w.frame().coordinateSystems.find(name);
     if (i == w.frame().coordinateSystems.end()) return std::nullopt;
-    return matrixOf(scene::at(i->second, w.shutter_.open));
+    return matrixOf(scene::at(i->second, w.shutter().open));
 }
 
 } // namespace
@@ -73,7 +73,7 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
     if (name == "Ri:DetailRange") return Information{{a.detailRange, a.detailRange + 4}, {}, false};
     if (name.rfind(kCoordinate, 0) == 0) return coordinateSystem(w, name.substr(kCoordinate.size()));
     if (p && p->shape) {
-        if (name == "Ri:Transformation") return matrixOf(p->shape->toCameraAt(p->shutter) * w.cameraToWorld_);
+        if (name == "Ri:Transformation") return matrixOf(p->shape->toCameraAt(p->shutter) * w.cameraToWorld());
         const bool back = dot(p->surface.n, p->I) > 0;
         if (name == "geometry:backfacing") return number(back);
         if (name == "geometry:frontfacing") return number(!back);
@@ -89,8 +89,8 @@ std::optional<Information> attributeOf(const WorldImpl& w, const scene::Attribut
     if (b && name == "shaderdisplacementbound:coordinatesystem") return shaderBound(*b, true);
     if (const scene::Param* set = a.value(name)) return given(set);
     if (name == "light:units") { // result of an area light that does not set it
-        const bool emits = a.areaLight >= 0 && size_t(a.areaLight) < w.lights_.size();
-        return words((emits ? w.lights_[size_t(a.areaLight)].mean : w.settings().hider != Hider::Path) ? "samples" : "radiance");
+        const bool emits = a.areaLight >= 0 && size_t(a.areaLight) < w.lights().size();
+        return words((emits ? w.lights()[size_t(a.areaLight)].mean : w.settings().hider != Hider::Path) ? "samples" : "radiance");
     }
     return unset(known::knownAttributes(), name, w.settings().hider == Hider::Path);
 }
@@ -124,7 +124,7 @@ std::optional<Information> optionOf(const WorldImpl& w, const std::string& name)
                      : w.settings().hider == Hider::Raytrace ? "raytrace"
                                                              : "hidden"); // the active hider
     else if (name == "Ri:Display" || name == "Display") return words(o.displays.empty() ? "ri.pic" : o.displays[0].name);
-    else if (name == "trace:maxdepth") v = {float(w.maxDepth_)};
+    else if (name == "trace:maxdepth") v = {float(w.maxDepth())};
     else if (const auto i = o.values.find(name); i != o.values.end()) return given(&i->second);
     else return unset(known::knownOptions(), name, w.settings().hider == Hider::Path);
     return Information{v, {}, false};

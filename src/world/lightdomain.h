@@ -6,6 +6,7 @@
 
 namespace alpenglow::world {
 
+/// The bins of one light. Directions are those from the lit point.
 class LightDomain {
 public:
     static constexpr int kMostBins = 384;

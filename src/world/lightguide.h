@@ -17,6 +17,7 @@ struct SeenLight {
     float pdf = 0;      ///< density per steradian of light samples there, without a guide
 };
 
+/// The guide of one light. Immutable.
 class LightGuide {
 public:
     /// For a light that is sampled.

@@ -1,7 +1,7 @@
 // Which lights are sampled at a vertex. Up to limits::kLightsSampled lights: all. Otherwise LightChooser chooses about that many
 // at the first vertex of a path, and limits::kLightsSampledDeeper at later ones. Contributions are divided by the probability of
 // the choice, so the mean is unchanged.
-#include "world/impl.h"
+#include "world/mutableworld.h"
 
 namespace alpenglow::world {
 
@@ -28,7 +28,7 @@ bool hasLobes(const SurfaceBinding& b) {
 }
 } // namespace
 
-void WorldImpl::groupLights(Diagnostics& d) {
+void MutableWorld::groupLights(Diagnostics& d) {
     std::map<std::tuple<const rsl::CompiledKernel*, int, LightKind>, size_t> known; // one block of one program
     std::vector<std::vector<int>> like; // in order of first lights: the order of pointers differs from run to run
     for (size_t i = 0; i < lights_.size(); ++i)
@@ -53,13 +53,13 @@ void WorldImpl::groupLights(Diagnostics& d) {
     }
 }
 
-bool WorldImpl::getsSamples(const BoundLight& l) const {
+bool MutableWorld::getsSamples(const BoundLight& l) const {
     if (!l.kernel) return false;
     return l.kind == LightKind::Point || l.kind == LightKind::Distant || l.sky ||
            (l.kind == LightKind::Area && !l.emitter->empty());
 }
 
-void WorldImpl::makeChoosers(Diagnostics& d) {
+void MutableWorld::makeChoosers(Diagnostics& d) {
     // Every emitter of a scene may have a list of its own, of all lights before it: trees are built only for lists with lobes.
     std::vector<char> asks(lightLists_.size(), hasLobes(primitiveHit_));
     for (const SurfaceBinding& b : bindings_)

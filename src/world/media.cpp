@@ -24,11 +24,11 @@ Media SurfaceBinding::beyond(const Media& from, const Vec3& n, const Vec3& in, c
     return m;
 }
 
-void WorldImpl::findEye() { eye_ = mediaAbout(*this, Vec3(0, 0, 0), 0); }
+void MutableWorld::findEye() { eye_ = mediaAbout(*this, Vec3(0, 0, 0), 0); }
 
 Media mediaAbout(const WorldImpl& world, const Vec3& at, float time) {
     Media about;
-    if (world.media_.empty()) return about;
+    if (world.media().empty()) return about;
     // A point is inside a medium if rays in both directions leave it without having entered. Two opposite directions tell a
     // closed surface from one seen from behind; the line is along no axis, so it rarely hits an edge.
     std::vector<int> left[2]; // bindings, innermost first
@@ -41,12 +41,12 @@ Media mediaAbout(const WorldImpl& world, const Vec3& at, float time) {
         std::vector<int> entered;
         for (int layer = 0; layer < limits::kShadowLayers; ++layer) {
             accel::Hit h;
-            if (!world.accel_->intersect(ray, h)) break;
+            if (!world.accel().intersect(ray, h)) break;
             world.goOn(ray, h);
-            const int binding = world.bindingOf_[h.shape];
-            const int medium = world.bindings_[size_t(binding)].inside;
+            const int binding = world.bindingOf()[h.shape];
+            const int medium = world.bindings()[size_t(binding)].inside;
             if (medium < 0) continue;
-            if (dot(world.accel_->point(h).n, ray.dir) < 0) entered.push_back(medium);
+            if (dot(world.accel().point(h).n, ray.dir) < 0) entered.push_back(medium);
             else if (const auto i = std::find(entered.rbegin(), entered.rend(), medium); i != entered.rend())
                 entered.erase(std::next(i).base());
             else left[side].push_back(medium);
@@ -54,7 +54,7 @@ Media mediaAbout(const WorldImpl& world, const Vec3& at, float time) {
     }
     for (size_t i = left[0].size(); i-- > 0;)
         if (std::find(left[1].begin(), left[1].end(), left[0][i]) != left[1].end())
-            about.push(left[0][i], world.media_[size_t(left[0][i])].priority);
+            about.push(left[0][i], world.media()[size_t(left[0][i])].priority);
     return about;
 }
 

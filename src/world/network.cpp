@@ -1,7 +1,7 @@
 // Networks of patterns as kernels know them: which co-shaders the connections of a shader reach.
 #include "scene/network.h"
 #include "rsl/front/seexpr.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 #include "world/patterns.h"
 #include <algorithm>
 
@@ -38,7 +38,7 @@ void connect(ShaderInstance& i, const scene::Connection& c, Diagnostics& d) {
 }
 
 /// A pattern that is an expression: its shader is made of it and of the values that come with it.
-static InstanceRef expression(WorldImpl& world, const scene::ShaderCall& call, Diagnostics& d) {
+static InstanceRef expression(MutableWorld& world, const scene::ShaderCall& call, Diagnostics& d) {
     scene::ShaderCall rest = call;
     std::string text;
     std::vector<rsl::front::SeExprVariable> variables;
@@ -68,7 +68,7 @@ static InstanceRef expression(WorldImpl& world, const scene::ShaderCall& call, D
 }
 
 /// The instance of a pattern; null, reported once, if there is no shader of that name.
-static InstanceRef pattern(WorldImpl& world, const scene::ShaderCall& call, Diagnostics& d) {
+static InstanceRef pattern(MutableWorld& world, const scene::ShaderCall& call, Diagnostics& d) {
     if (call.name == "PxrSeExpr") return expression(world, call, d);
     Diagnostics said;
     InstanceRef i = world.instance(call, rsl::ShaderKind::Surface, said, true);
@@ -88,7 +88,7 @@ static InstanceRef pattern(WorldImpl& world, const scene::ShaderCall& call, Diag
     return i;
 }
 
-void addPatterns(WorldImpl& world, const ShaderInstance& shader, const std::map<std::string, scene::ShaderRef>& coshaders,
+void addPatterns(MutableWorld& world, const ShaderInstance& shader, const std::map<std::string, scene::ShaderRef>& coshaders,
                  std::vector<std::pair<std::string, scene::ShaderRef>>& to, Diagnostics& d) {
     std::map<std::string, scene::ShaderRef> reached;
     std::vector<InstanceRef> rest;

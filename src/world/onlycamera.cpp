@@ -1,7 +1,7 @@
 // Whether a frame traces camera rays only. Then geometry that they cannot reach may be left out.
 #include "scene/scene.h"
 #include "world/cloudstore.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 #include "world/service.h"
 
 namespace alpenglow::world {
@@ -33,7 +33,7 @@ bool sendsNothing(const Opacity& o) { return sendsNothing(o.kernel); }
 
 } // namespace
 
-bool WorldImpl::onlyCameraRays() const {
+bool MutableWorld::onlyCameraRays() const {
     if (settings_.hider == Hider::Path || !media_.empty() || deferred_ || globalMaps_ || (clouds_ && clouds_->bakes) ||
         needs_.records || settings_.bsdfOnly || settings_.lightOnly)
         return false;

@@ -1,11 +1,11 @@
 // Attenuation of shadow rays by surfaces: a constant if known in advance, else a kernel.
-#include "world/impl.h"
+#include "world/mutableworld.h"
 #include "world/surfaces.h"
 #include <algorithm>
 
 namespace alpenglow::world {
 
-void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
+void MutableWorld::sortByOpacity(std::span<const uint32_t> visibility) {
     mediaOverrule_ = std::any_of(media_.begin(), media_.end(), [&](const Medium& m) { return m.priority != media_[0].priority; });
     if (allOpaque_) return;
     for (size_t i = 0; i < shapes_.size(); ++i) {
@@ -31,7 +31,7 @@ void WorldImpl::sortByOpacity(std::span<const uint32_t> visibility) {
     if (!byOpacity_.few->takesRows()) byOpacity_.few.reset();
 }
 
-void WorldImpl::findShadowVisibility(std::span<const uint32_t> visibility) {
+void MutableWorld::findShadowVisibility(std::span<const uint32_t> visibility) {
     constexpr uint32_t kLobes = accel::kDiffuse | accel::kSpecular;
     std::vector<geometry::ShapeRef> shapes;
     std::vector<uint32_t> seen;
@@ -63,8 +63,8 @@ void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {
     ray.excludePrim = h.prim;
 }
 
-Opacity WorldImpl::opacityOf(const SurfaceBinding& b, const geometry::Shape& shape, std::string mode,
-                             const std::vector<std::string>& varying, Evaluator& evaluator, Diagnostics& d) {
+Opacity MutableWorld::opacityOf(const SurfaceBinding& b, const geometry::Shape& shape, std::string mode,
+                                const std::vector<std::string>& varying, Evaluator& evaluator, Diagnostics& d) {
     const scene::Attributes& a = shape.attributes();
     const bool asked = !mode.empty();
     if (!asked) mode = "shader";

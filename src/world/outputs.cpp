@@ -1,7 +1,7 @@
 // Shader outputs that displays request: which exist, and their number of components.
 #include "world/outputs.h"
 #include "world/cloudstore.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 
 namespace alpenglow::world {
 
@@ -123,7 +123,7 @@ std::vector<std::string> WorldImpl::knownOutputs() const {
     return {names.begin(), names.end()};
 }
 
-void WorldImpl::measureOutputs() {
+void MutableWorld::measureOutputs() {
     outputWidths_.clear();
     const std::set<const ShaderInstance*> shaders = givers();
     for (size_t k = 0; k < wanted_.size(); ++k) {

@@ -5,7 +5,7 @@
 
 namespace alpenglow::world {
 
-class WorldImpl;
+class MutableWorld;
 
 /// Whether parameters of a shader take outputs of patterns.
 bool takesOutputs(const ShaderInstance&);
@@ -16,7 +16,7 @@ void connect(ShaderInstance&, const scene::Connection&, Diagnostics&);
 
 /// Adds to the co-shaders of an instance the patterns that it takes outputs of, with those that they take outputs of. A missing
 /// shader is reported once.
-void addPatterns(WorldImpl&, const ShaderInstance&, const std::map<std::string, scene::ShaderRef>& coshaders,
+void addPatterns(MutableWorld&, const ShaderInstance&, const std::map<std::string, scene::ShaderRef>& coshaders,
                  std::vector<std::pair<std::string, scene::ShaderRef>>& to, Diagnostics&);
 
 } // namespace alpenglow::world

@@ -64,7 +64,7 @@ std::string photonKey(const scene::Attributes& a) {
     return key;
 }
 
-void WorldImpl::bindPhotons(std::span<const uint32_t> visibility) {
+void MutableWorld::bindPhotons(std::span<const uint32_t> visibility) {
     for (size_t i = 0; i < shapes_.size(); ++i) {
         PhotonBinding& b = bindings_[size_t(bindingOf_[i])].photons;
         const uint32_t traced = visibility[i] & (accel::kDiffuse | accel::kSpecular);
@@ -100,15 +100,15 @@ std::shared_ptr<const PhotonSite> photonSite(const SiteInfo& i, const rsl::Compi
     const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
                             s.place.column};
     if (word != i.text.end() && word->second != "radiance" && word->second != "irradiance")
-        world.diagnostics_->reportOnce("photonlookup:" + word->second,
+        world.diagnostics().reportOnce("photonlookup:" + word->second,
                                        {Severity::Warning,
                                         Rie::BadToken,
                                         place,
                                         "photonmap(): unknown lookuptype \"" + word->second + "\"; irradiance is looked up",
                                         "\"irradiance\" and \"radiance\" are known",
                                         {}});
-    if (p->caustic) world.photons_->asksCaustics = true;
-    else world.photons_->asks(p->name, place);
+    if (p->caustic) world.photons()->asksCaustics = true;
+    else world.photons()->asks(p->name, place);
     return p;
 }
 

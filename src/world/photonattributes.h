@@ -1,10 +1,10 @@
 // Photon attributes and calls.
 #pragma once
-#include "world/impl.h"
+#include "world/mutableworld.h"
 
 namespace alpenglow::world {
 
-/// Reads Attribute "photon" of a surface; reports unknown names. WorldImpl::bindPhotons() sets `meets` and `intersectsBoth`.
+/// Reads Attribute "photon" of a surface; reports unknown names. MutableWorld::bindPhotons() sets `meets` and `intersectsBoth`.
 PhotonBinding photonsOf(const scene::Attributes&, Diagnostics&);
 
 /// A key that differs for surfaces with different photonsOf() or visibility; "" without photon attributes.

@@ -14,6 +14,7 @@ namespace alpenglow::world {
 class CausticGuide;
 class LightGuide;
 
+/// The photon maps of one world. Looked up by any thread; changed between passes only.
 class PhotonStore {
 public:
     /// Photons in files are in world space; `worldToCamera` converts them to the space of rays.

@@ -14,7 +14,7 @@ uint32_t needsOf(const BoundLight& l) {
 
 } // namespace
 
-void WorldImpl::setPointNeeds() {
+void MutableWorld::setPointNeeds() {
     // Lights may query the lit surface, and footprints use partial derivatives.
     uint32_t always = needs_.footprints ? geometry::kNeedPartials : 0;
     if (needs_.facePlaces) always |= geometry::kNeedUV | geometry::kNeedPartials;

@@ -61,7 +61,7 @@ std::shared_ptr<const PointSite> pointSite(const SiteInfo& i, const rsl::Compile
     if (const std::string map = text("environmentmap"); !map.empty()) {
         const SourcePlace place{s.place.file < int(k.files().size()) ? k.files()[size_t(s.place.file)] : "", s.place.line,
                                 s.place.column};
-        p->map = world.textures_->open(map, world.settings_.texturePaths, place);
+        p->map = world.textures().open(map, world.settings().texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, p->toMap);
     }
     p->value = result("");

@@ -26,6 +26,7 @@ struct PointSite {
 
 /// Whether a call reads point clouds.
 bool readsPoints(const SiteInfo&);
+/// Reads the arguments of a call site.
 std::shared_ptr<const PointSite> pointSite(const SiteInfo&, const rsl::CompiledKernel&, const WorldImpl&);
 /// "front", "back", "both" or "reversed".
 pointcloud::DiskSides diskSides(const std::string& word);

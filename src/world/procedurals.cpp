@@ -10,19 +10,19 @@ const WorldImpl* inside(const World& w) { return dynamic_cast<const WorldImpl*>(
 } // namespace
 
 void askForProcedurals(const World& w, int most) {
-    if (hasDeferred(w)) inside(w)->deferred_->askFor(most);
+    if (hasDeferred(w)) inside(w)->deferred()->askFor(most);
 }
 
-std::vector<int> procedurals(const World& w) { return hasDeferred(w) ? inside(w)->deferred_->met() : std::vector<int>(); }
+std::vector<int> procedurals(const World& w) { return hasDeferred(w) ? inside(w)->deferred()->met() : std::vector<int>(); }
 
-bool hasDeferred(const World& w) { return inside(w) && inside(w)->deferred_; }
+bool hasDeferred(const World& w) { return inside(w) && inside(w)->deferred(); }
 
 bool needsAllShapes(const World& w) { return inside(w) && (bakes(w) || w.interpolates() || !photonMapsOf(w, true).empty()); }
 
 void takeOver(const World& w, const World& before) {
-    if (inside(w) && inside(before)) inside(w)->prints_.goOn(inside(before)->prints_);
+    if (inside(w) && inside(before)) inside(w)->prints().goOn(inside(before)->prints());
 }
 
-bool hasPrints(const World& w) { return inside(w) && inside(w)->prints_.pending(); }
+bool hasPrints(const World& w) { return inside(w) && inside(w)->prints().pending(); }
 
 } // namespace alpenglow::world

@@ -64,10 +64,10 @@ const uint8_t* ShapeSubsets::find(const WorldImpl& world, const std::string& wan
     auto [at, fresh] = kept_.try_emplace(std::move(key));
     if (!fresh) return at->second.data();
     std::vector<uint8_t>& take = at->second;
-    take.reserve(world.shapes_.size() + 1);
+    take.reserve(world.shapes().size() + 1);
     const scene::Attributes* last = nullptr; // of consecutive shapes with the same attributes
     uint8_t taken = 0;
-    for (const geometry::ShapeRef& s : world.shapes_) {
+    for (const geometry::ShapeRef& s : world.shapes()) {
         if (&s->attributes() != last) {
             last = &s->attributes();
             bool in = with.empty(), out = false;
@@ -96,7 +96,7 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, const WorldImpl& world
         return f == i.text.end() ? std::string() : f->second;
     };
     auto unknown = [&](const char* name, const std::string& word, const char* known) {
-        world.diagnostics_->reportOnce("rays:" + std::string(name) + word + place.file + std::to_string(place.line),
+        world.diagnostics().reportOnce("rays:" + std::string(name) + word + place.file + std::to_string(place.line),
                                        {Severity::Warning,
                                         Rie::BadToken,
                                         place,
@@ -135,7 +135,7 @@ std::shared_ptr<const RaySite> raySite(const SiteInfo& i, const WorldImpl& world
         if (const auto m = modeOf(word)) r->set.mode = *m;
         else unknown("hitmode", word, "primitive, shader, default");
     }
-    r->set.only = world.subsets_.find(world, r->subsetText, r->excludeText);
+    r->set.only = world.subsets().find(world, r->subsetText, r->excludeText);
     r->saysSides = r->sides >= 0 || !text("hitsides").empty();
     r->fixed = r->subset < 0 && r->exclude < 0 && r->sides < 0 && r->mode < 0 && r->label < 0 && r->type < 0;
     return r;

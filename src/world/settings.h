@@ -36,6 +36,8 @@ struct Settings {
     /// is shaded at its own hit.
     bool micropolygons = false;
     bool evenLights = false; ///< many lights: all have the same probability (tests, measurements)
+    /// Total size of the lists of lights that surfaces have of their own; surfaces behind these share one list (tests: 0).
+    size_t listedLights = 4'000'000;
     MediumSampling mediumSampling = MediumSampling::Both;
     std::vector<std::string> shaderPaths, texturePaths;
     ReadPolicy read{};                    ///< restricts where map names may lead

@@ -6,8 +6,8 @@
 #include "scene/network.h"
 #include "scene/scene.h"
 #include "world/fitparameter.h"
-#include "world/impl.h"
 #include "world/lightobjects.h"
+#include "world/mutableworld.h"
 #include "world/patterns.h"
 #include <algorithm>
 #include <chrono>
@@ -134,7 +134,7 @@ static scene::Param asDeclared(scene::Param given, const rsl::CompiledShader& sh
 }
 
 /// Sets all parameters: values of the scene, else defaults.
-void WorldImpl::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterValue>& values, Diagnostics& d) {
+void MutableWorld::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterValue>& values, Diagnostics& d) {
     ShaderInstance* i = &of;
     // Defaults: expressions of the shader in the instance's spaces, given the scene's values.
     auto spaces = [&](const std::string& from, const std::string& to, float out[16]) {
@@ -159,7 +159,7 @@ void WorldImpl::takeValues(ShaderInstance& of, const std::vector<rsl::ParameterV
     }
 }
 
-InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
+InstanceRef MutableWorld::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
     double begin = compileClock();
     Diagnostics said; // the compiler knows no scene: messages without a place get that of the call
     auto program = compiler_->load(call.name, settings_.shaderPaths, said);
@@ -212,7 +212,7 @@ InstanceRef WorldImpl::instance(const scene::ShaderCall& call, rsl::ShaderKind k
 }
 
 /// Sets parameter values, converted to current space by its toCurrent.
-void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall& call, Diagnostics& d) {
+void MutableWorld::setParameters(ShaderInstance& instance, const scene::ShaderCall& call, Diagnostics& d) {
     ShaderInstance* const i = &instance;
     const auto& program = i->program;
     std::vector<rsl::ParameterValue> values;
@@ -256,14 +256,14 @@ void WorldImpl::setParameters(ShaderInstance& instance, const scene::ShaderCall&
     takeValues(*i, values, d);
 }
 
-InstanceRef WorldImpl::builtin(const std::string& name, rsl::ShaderKind kind, Diagnostics& d) {
+InstanceRef MutableWorld::builtin(const std::string& name, rsl::ShaderKind kind, Diagnostics& d) {
     scene::ShaderCall call;
     call.name = name;
     return instance(call, kind, d);
 }
 
-void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
-                                   const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics& d) const {
+void MutableWorld::dropMissingHandles(const ShaderInstance& of, std::map<std::string, std::string>& texts,
+                                      const std::vector<std::pair<std::string, scene::ShaderRef>>& bound, Diagnostics& d) const {
     std::vector<std::string> handles;
     for (const auto& [handle, call] : bound) handles.push_back(handle);
     for (auto& [key, handle] : texts) {
@@ -286,8 +286,8 @@ void WorldImpl::dropMissingHandles(const ShaderInstance& of, std::map<std::strin
     }
 }
 
-InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders,
-                                     Diagnostics& d, const scene::LightSet& lights) {
+InstanceRef MutableWorld::withCoShaders(const InstanceRef& shader, const std::map<std::string, scene::ShaderRef>& coshaders,
+                                        Diagnostics& d, const scene::LightSet& lights) {
     const bool connected = shader && takesOutputs(*shader), handles = shader && shader->program->program().handles;
     if (!connected && !handles) return shader;
     std::vector<std::pair<std::string, scene::ShaderRef>> called;
@@ -336,8 +336,8 @@ InstanceRef WorldImpl::withCoShaders(const InstanceRef& shader, const std::map<s
     return bound = copy;
 }
 
-rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::vector<std::string>& outputs,
-                                            const std::vector<std::string>& varying, bool mixed, bool path) const {
+rsl::KernelOptions MutableWorld::kernelOptions(const ShaderInstance& i, const std::vector<std::string>& outputs,
+                                               const std::vector<std::string>& varying, bool mixed, bool path) const {
     rsl::KernelOptions o;
     o.lanes = settings_.lanes;
     o.mixed = mixed;
@@ -356,14 +356,22 @@ rsl::KernelOptions WorldImpl::kernelOptions(const ShaderInstance& i, const std::
     return o;
 }
 
-std::vector<rsl::ir::OutputLight> WorldImpl::lightOfOutputs(const ShaderInstance& i, const std::vector<std::string>& outputs,
-                                                            const std::vector<std::string>& varying, bool path) const {
+std::vector<rsl::ir::OutputLight> MutableWorld::lightOfOutputs(const ShaderInstance& i, const std::vector<std::string>& outputs,
+                                                               const std::vector<std::string>& varying, bool path) const {
     return rsl::lightOfOutputs(i.program->program(), i.program->shader(), kernelOptions(i, outputs, varying, false, path));
 }
 
-BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs,
-                              const std::vector<std::string>& varying, bool mixed, bool path, Diagnostics& d,
-                              const std::string& light) {
+BoundKernel MutableWorld::kernel(const ShaderInstance& i, const std::vector<std::string>& outputs,
+                                 const std::vector<std::string>& varying, bool mixed, bool path, Diagnostics& d,
+                                 const std::string& light) {
+    BoundKernel bound = kernelWithoutRays(i, outputs, varying, mixed, path, d, light);
+    needs_ |= bound.needs;
+    return bound;
+}
+
+BoundKernel MutableWorld::kernelWithoutRays(const ShaderInstance& i, const std::vector<std::string>& outputs,
+                                            const std::vector<std::string>& varying, bool mixed, bool path, Diagnostics& d,
+                                            const std::string& light) {
     mixed |= i.moving != nullptr; // points at different times have different matrices and parameters
     rsl::KernelOptions o = kernelOptions(i, outputs, varying, mixed, path);
     o.light = light;
@@ -378,14 +386,12 @@ BoundKernel WorldImpl::kernel(const ShaderInstance& i, const std::vector<std::st
             spaces.push_back(std::move(name));
     if (!spaces.empty()) {
         sayUnknownSpaces(*this, i, spaces, d);
-        if (!built_) keepSpaces(spaces);
+        keepSpaces(spaces);
     }
     ++facts_.kernels;
     facts_.cacheHits += k->fromCache();
     (k->facts().suspends ? facts_.suspending : facts_.affine)++;
-    BoundKernel bound = bindKernel(std::move(k), mixed, path, *this);
-    needs_ |= bound.needs;
-    return bound;
+    return bindKernel(std::move(k), mixed, path, *this);
 }
 
 } // namespace alpenglow::world

@@ -1,7 +1,7 @@
 #include "world/skytable.h"
 #include "base/exact.h"
 #include "world/emitterfootprint.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 #include "world/skysampler.h"
 #include <algorithm>
 #include <cmath>
@@ -272,7 +272,7 @@ int widestMap(const BoundKernel& k, const WorldImpl& world) {
 
 } // namespace
 
-void WorldImpl::tabulateSkies(Evaluator& evaluator) {
+void MutableWorld::tabulateSkies(Evaluator& evaluator) {
     for (const int i : skies_) {
         BoundLight& l = lights_[size_t(i)];
         if (l.kind != LightKind::Environment || !l.importance || l.asksSurface || l.sentCl >= 0) continue;

@@ -1,8 +1,8 @@
 // Coordinate systems: of the camera, named ones, and the matrices between them.
 #include "base/exact.h"
 #include "scene/scene.h"
-#include "world/impl.h"
 #include "world/lightobjects.h"
+#include "world/mutableworld.h"
 #include <set>
 
 namespace alpenglow::world {
@@ -26,7 +26,7 @@ void screenWindow(const scene::Options& o, double w[4]) {
 
 } // namespace
 
-void WorldImpl::setCamera(const scene::Options& o) {
+void MutableWorld::setCamera(const scene::Options& o) {
     shutter_ = scene::Shutter(o);
     worldToCamera_ = scene::at(o.worldToCamera, shutter_.open);
     cameraToWorld_ = inverse(worldToCamera_);
@@ -56,7 +56,7 @@ bool WorldImpl::knowsSpace(const std::string& name) const {
            frame_->options.cameraSpaces.count(name);
 }
 
-void WorldImpl::keepSpaces(std::span<const rsl::InputName> spaces) {
+void MutableWorld::keepSpaces(std::span<const rsl::InputName> spaces) {
     for (const rsl::InputName& s : spaces)
         if (Matrix m; matrix(s.from, s.to, m)) spaces_[s.from].emplace(s.to, m);
 }

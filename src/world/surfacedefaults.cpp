@@ -22,7 +22,7 @@ bool SurfaceBinder::differences(const geometry::Shape& shape, bool byDefault) {
 }
 
 bool SurfaceBinder::needsHeadlight() {
-    const auto& primitives = world_.frame_->primitives;
+    const auto& primitives = world_.frame().primitives;
     const auto shaded = [](const geometry::ShapeRef& s) { return s->attributes().surface != nullptr; };
     // Contents of deferred procedurals are unknown before rays reach them.
     if (world_.shapes_.empty() || !world_.lights_.empty() || std::any_of(world_.shapes_.begin(), world_.shapes_.end(), shaded) ||

@@ -12,9 +12,6 @@ namespace alpenglow::world {
 
 using rsl::OutputName;
 
-/// Total size of separate light lists; later lists share one (WorldImpl::allSampled_).
-static constexpr size_t kListedLights = 4'000'000;
-
 float attributeNumber(const scene::Attributes& a, const std::string& key, float fallback) {
     const scene::Param* p = a.value(key);
     return p && !p->numbers.empty() ? p->numbers[0] : fallback;
@@ -468,7 +465,7 @@ void SurfaceBinder::bindLights(SurfaceBinding& b, const scene::Attributes& a) {
     if (size_t(b.lightList) != world_.lightLists_.size()) return;
     WorldImpl::LightList& list = world_.lightLists_.emplace_back();
     list.lights = b.lights;
-    list.ofAll = world_.listed_ + b.lights.size() > kListedLights;
+    list.ofAll = world_.listed_ + b.lights.size() > world_.settings_.listedLights;
     if (list.ofAll) {
         if (world_.allSampled_.empty())
             for (size_t l = 0; l < world_.lights_.size(); ++l)

@@ -1,7 +1,7 @@
 // Binds shapes to shaders, kernels and lights. Shapes that may be shaded together share a binding.
 #pragma once
 #include "world/gathersite.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 #include "world/outputs.h"
 #include <map>
 
@@ -13,7 +13,7 @@ float attributeNumber(const scene::Attributes&, const std::string& key, float fa
 /// Fills bindings_, bindingOf_ and related members for the shapes of a world whose lights are bound.
 class SurfaceBinder {
 public:
-    SurfaceBinder(WorldImpl& world, Evaluator& e, Diagnostics& d) : world_(world), evaluator_(e), diagnostics_(d) {}
+    SurfaceBinder(MutableWorld& world, Evaluator& e, Diagnostics& d) : world_(world), evaluator_(e), diagnostics_(d) {}
     /// Returns false after an error that prevents rendering; the error is reported.
     bool bindAll();
 
@@ -59,7 +59,7 @@ private:
     Medium bindVolume(const InstanceRef&, const Names& varying);
     /// The shader of an Interior or Exterior with overrides by constant variables of the primitive; null: none.
     InstanceRef volumeOf(const scene::ShaderRef&, const geometry::Shape&);
-    /// Index in WorldImpl::media_ of an Interior or Exterior; -1: none.
+    /// Index in WorldImpl::media() of an Interior or Exterior; -1: none.
     int mediumOf(const InstanceRef&, const geometry::Shape&);
     /// `more`: outputs in addition to P, N and their derivatives.
     void bindDisplacement(SurfaceBinding&, const Names& varying, const Names& more);
@@ -69,7 +69,7 @@ private:
     /// Prepares opacity for rays with a "hitmode". Returns false if the shipped shaders are missing.
     bool bindHitModes();
 
-    WorldImpl& world_;
+    MutableWorld& world_;
     Evaluator& evaluator_;
     Diagnostics& diagnostics_;
     bool path_ = false;

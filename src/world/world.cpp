@@ -10,7 +10,7 @@
 
 namespace alpenglow::world {
 
-void WorldImpl::numberShapes() {
+void MutableWorld::numberShapes() {
     for (uint32_t i = 0; i < shapes_.size(); ++i) {
         numberOfShape_.emplace(shapes_[i].get(), i);
         const geometry::Placed* p = shapes_[i]->placed();
@@ -31,7 +31,7 @@ void WorldImpl::numberShapes() {
     }
 }
 
-void WorldImpl::findProcedurals() {
+void MutableWorld::findProcedurals() {
     std::vector<DeferredBounds::Bound> bounds;
     const Matrix toCamera = scene::at(frame_->options.worldToCamera, scene::Shutter(frame_->options).open);
     for (const scene::PrimitiveRef& p : frame_->primitives) {
@@ -55,8 +55,8 @@ std::vector<World::MapRead> WorldImpl::mapsRead() const {
     return all;
 }
 
-void WorldImpl::begin(std::shared_ptr<const scene::Frame> frame, const Settings& settings, ServiceTable services,
-                      Diagnostics& d) {
+void MutableWorld::begin(std::shared_ptr<const scene::Frame> frame, const Settings& settings, ServiceTable services,
+                         Diagnostics& d) {
     frame_ = std::move(frame);
     sceneLights_ = frame_->lights.size();
     settings_ = settings;
@@ -70,7 +70,7 @@ void WorldImpl::begin(std::shared_ptr<const scene::Frame> frame, const Settings&
 }
 
 std::shared_ptr<const WorldImpl> emptyWorld(const Settings& settings, ServiceTable services, Diagnostics& d) {
-    auto w = std::make_shared<WorldImpl>();
+    auto w = std::make_shared<MutableWorld>();
     w->begin(std::make_shared<scene::Frame>(), settings, services, d);
     w->textures_ = std::make_unique<texture::TextureSystem>(d);
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, std::vector<uint32_t>(), d, true);

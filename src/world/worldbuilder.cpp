@@ -95,7 +95,7 @@ bool rispecSpecular(const scene::Options& o, const std::string& dialect, Diagnos
 }
 
 /// Sets the range of samples that see each shape that fades between levels of detail.
-void findLevels(WorldImpl& w) {
+void findLevels(MutableWorld& w) {
     std::vector<accel::Accel::Levels> levels(w.shapes_.size());
     for (size_t i = 0; i < levels.size(); ++i)
         if (const auto& level = w.shapes_[i]->attributes().level) {
@@ -131,7 +131,7 @@ texture::TextureSettings mapSettings(const scene::Options& o, const Settings& se
 }
 
 /// Gives area lights the meshes that rays hit.
-void takeDiced(WorldImpl& w, const std::vector<uint32_t>& visibility) {
+void takeDiced(MutableWorld& w, const std::vector<uint32_t>& visibility) {
     const auto seenThrough = [&](const geometry::Shape& s) { // light behind the surface is visible, too
         const size_t i = w.numberOfShape_.at(&s);
         const bool blocks = (visibility[i] & accel::kTransmission) && w.bindings_[size_t(w.bindingOf_[i])].opacity.opaque();
@@ -147,7 +147,7 @@ public:
     /// All arguments must outlive the builder.
     WorldBuilder(const std::shared_ptr<const scene::Frame>& frame, const Settings& settings, Diagnostics& d)
         : frame_(*frame), settings_(settings), d_(d), path_(settings.hider == Hider::Path), begin_(buildClock()),
-          world_(std::make_shared<WorldImpl>()), w_(*world_) {}
+          world_(std::make_shared<MutableWorld>()), w_(*world_) {}
 
     /// Null after an error that prevents rendering (reported), or when Settings::stop is set.
     std::shared_ptr<const World> run(const std::shared_ptr<const scene::Frame>& frame, std::span<const Service> services,
@@ -262,8 +262,8 @@ private:
     Diagnostics& d_;
     const bool path_;    ///< the hider is path
     const double begin_; ///< of buildClock(), in seconds
-    std::shared_ptr<WorldImpl> world_;
-    WorldImpl& w_;
+    std::shared_ptr<MutableWorld> world_;
+    MutableWorld& w_;
     std::unique_ptr<Evaluator> evaluator_; ///< runs kernels of the world that is being built
     UnsetVisibility unset_;
 };

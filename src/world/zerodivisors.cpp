@@ -2,11 +2,11 @@
 // often render black.
 #include "rsl/zerodivisors.h"
 #include "rsl/compiler.h"
-#include "world/impl.h"
+#include "world/mutableworld.h"
 
 namespace alpenglow::world {
 
-void WorldImpl::sayZeroDivisions(const ShaderInstance& i, const rsl::KernelOptions& o, Diagnostics& d) {
+void MutableWorld::sayZeroDivisions(const ShaderInstance& i, const rsl::KernelOptions& o, Diagnostics& d) {
     const rsl::Program& program = i.program->program();
     const std::vector<std::string> zeros = rsl::zeroDivisors(program, i.program->shader(), i.parameters.numbers);
     if (zeros.empty()) return;

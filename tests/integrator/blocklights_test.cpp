@@ -181,19 +181,6 @@ TEST(BlockLights, FollowLightsThatTrace) {
     expectSameBits(roomOf("\"matte\"", lights + manyLights(6)), pathSettings(), .3, "many", 3);
 }
 
-/// Makes all lists of lights share one, as where there are too many to keep each.
-void shareOneList(const World& of) {
-    auto& w = const_cast<WorldImpl&>(dynamic_cast<const WorldImpl&>(of));
-    for (size_t l = 0; l < w.lights_.size(); ++l)
-        if (w.getsSamples(w.lights_[l])) w.allSampled_.push_back(int(l));
-    for (WorldImpl::LightList& list : w.lightLists_) {
-        list.ofAll = true;
-        if (list.sampled == w.allSampled_) w.allChooser_ = std::move(list.chooser), w.allDeeper_ = std::move(list.deeper);
-        list.sampled.clear();
-        list.chooser = list.deeper = LightChooser();
-    }
-}
-
 TEST(BlockLights, ChooseOfTheLightsThatAreOnWhereListsShareOne) {
     writeFacets(); // the later half of the balls is not lit by some of the lights
     for (const std::string& many : {std::string(), manyLights(6)})
@@ -207,8 +194,8 @@ TEST(BlockLights, ChooseOfTheLightsThatAreOnWhereListsShareOne) {
                 for (const bool blocks : {false, true}) {
                     Settings s = pathSettings();
                     s.rowRequests = blocks;
+                    s.listedLights = 0;
                     Scene scene(rib, s);
-                    shareOneList(*scene.world);
                     traced[blocks] = trace(scene);
                 }
                 EXPECT_GT(sumOf(traced[0]), 1) << many << more << shader;

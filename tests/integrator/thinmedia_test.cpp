@@ -65,8 +65,8 @@ TEST(ThinMedia, FewBoundariesChangeNoBit) {
                             "LightSource \"pointlight\" 2 \"from\" [.3 2 .2] \"intensity\" 3\n" + floor + pane +
                             box("\"color scattering\" [.3 .4 .9]");
     Scene a(inWorld(few), withShaders(Hider::Path)), b(inWorld(few + far), withShaders(Hider::Path));
-    ASSERT_TRUE(std::static_pointer_cast<const WorldImpl>(a.world)->byOpacity_.few);
-    ASSERT_FALSE(std::static_pointer_cast<const WorldImpl>(b.world)->byOpacity_.few);
+    ASSERT_TRUE(std::static_pointer_cast<const WorldImpl>(a.world)->byOpacity().few);
+    ASSERT_FALSE(std::static_pointer_cast<const WorldImpl>(b.world)->byOpacity().few);
     const auto one = a.trace(rays), other = b.trace(rays);
     double sum = 0;
     for (size_t i = 0; i < rays.size(); ++i) {

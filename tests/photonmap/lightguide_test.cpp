@@ -78,7 +78,7 @@ LightGuideFigures learn(Scene& s, int paths) {
 /// A guide for the first light, of directions that mean nothing.
 void guideWrongly(Scene& s) {
     const auto& w = static_cast<const WorldImpl&>(*s.world);
-    const BoundLight& l = w.lights_[0];
+    const BoundLight& l = w.lights()[0];
     g_random.seed(3);
     std::vector<SeenLight> seen;
     for (int i = 0; i < 4000; ++i) {
@@ -92,8 +92,8 @@ void guideWrongly(Scene& s) {
     auto guide =
         l.guidable ? std::make_shared<const LightGuide>(domain, seen, many) : std::make_shared<const LightGuide>(domain, seen);
     EXPECT_GT(guide->used(), 0u);
-    w.photons_->lightGuides.assign(w.lights_.size(), nullptr);
-    w.photons_->lightGuides[0] = guide;
+    w.photons()->lightGuides.assign(w.lights().size(), nullptr);
+    w.photons()->lightGuides[0] = guide;
 }
 
 } // namespace
@@ -172,7 +172,7 @@ TEST(LightGuide, PathsHaveTheSameLight) {
     for (const auto& [name, light] :
          {std::pair<std::string, std::string>("sky", kSky), {"lamp", kLamp}, {"sky with a table", sideSky()}}) {
         Scene s(inWorld(room(light)), path(true));
-        EXPECT_EQ(static_cast<const WorldImpl&>(*s.world).lights_[0].sky != nullptr, name == "sky with a table");
+        EXPECT_EQ(static_cast<const WorldImpl&>(*s.world).lights()[0].sky != nullptr, name == "sky with a table");
         const int n = samples(60000);
         const Moments plain = s.estimate(ray, n);
         EXPECT_GT(learn(s, 80000).used, 0u) << name;

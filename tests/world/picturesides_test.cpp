@@ -21,7 +21,7 @@ const std::string kPatches =
 std::pair<uint32_t, uint32_t> diced(const std::string& frame, const std::string& world, Settings settings = {}) {
     const Scene s(kCamera + frame + "WorldBegin\n" + world + kPatches + "WorldEnd\n", std::move(settings));
     if (!s.world) return {};
-    const auto& shapes = static_cast<const WorldImpl&>(*s.world).shapes_;
+    const auto& shapes = static_cast<const WorldImpl&>(*s.world).shapes();
     EXPECT_EQ(shapes.size(), 2u);
     return {shapes[0]->mesh().triangles(), shapes[1]->mesh().triangles()};
 }
@@ -84,7 +84,7 @@ TEST(PictureSides, TenThousandDisplacedPatchesTakeWhatThePictureShows) {
         }
     const Scene s(rib + "WorldEnd\n");
     size_t facets = 0, bytes = 0;
-    for (const geometry::ShapeRef& shape : static_cast<const WorldImpl&>(*s.world).shapes_) {
+    for (const geometry::ShapeRef& shape : static_cast<const WorldImpl&>(*s.world).shapes()) {
         facets += shape->mesh().triangles();
         bytes += shape->mesh().P.size() * sizeof(Vec3) + shape->mesh().made.size() * sizeof(uint32_t);
     }

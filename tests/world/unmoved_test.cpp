@@ -21,7 +21,7 @@ bool exact(const std::string& body, const std::string& given = "", const std::st
     writeShader(name, "displacement " + name + "(float Km = .1; float bumps[2] = {0, 0}; float n = 3;) {\n" + body + "\n}\n");
     const Scene s(kFrame + "Displacement \"" + name + "\" " + given + "\nSphere 1 -1 1 360 " + sphere + "\nWorldEnd\n");
     if (!s.world) return false;
-    return static_cast<const WorldImpl&>(*s.world).shapes_.at(0)->exact();
+    return static_cast<const WorldImpl&>(*s.world).shapes().at(0)->exact();
 }
 
 const char* const kBump = "P += Km * noise(4 * P) * normalize(N); N = calculatenormal(P);";

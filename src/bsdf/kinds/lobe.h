@@ -17,6 +17,7 @@ namespace alpenglow::bsdf::AL_NAMESPACE {
 /// Floats from one row of a block to the next.
 inline constexpr int kStride = ALPENGLOW_LANES == 1 ? 1 : kLobeBlock;
 
+/// As many floats as there are lanes; no alignment is required.
 AL_INLINE vf loadLanes(const float* from) {
     vf x;
     __builtin_memcpy(&x, from, sizeof x);
@@ -27,13 +28,17 @@ AL_INLINE void storeLanes(float* to, vf x) { __builtin_memcpy(to, &x, sizeof x);
 /// Lanes of a block.
 struct Given {
     const float* at;
+    /// A row (LobeRow), by lane.
     AL_MEMBER vf number(int row) const { return loadLanes(at + row * kStride); }
+    /// Three rows from this one on.
     AL_MEMBER Direction triple(int row) const { return {number(row), number(row + 1), number(row + 2)}; }
     AL_MEMBER Direction axis() const { return triple(kRowAxis); }
     AL_MEMBER Direction wo() const { return triple(kRowWo); }
+    /// A row that the kind's prepare() has set.
     AL_MEMBER vf own(int k) const { return number(kRowOwn + k); }
     AL_MEMBER Direction ownTriple(int k) const { return triple(kRowOwn + k); }
 };
+/// Lanes of a block that prepare() may write.
 struct Rows : Given {
     float* to;
     AL_MEMBER explicit Rows(float* p) : Given{p}, to(p) {}
@@ -42,14 +47,17 @@ struct Rows : Given {
     AL_MEMBER void own(int k, vf x) const { set(kRowOwn + k, x); }
     AL_MEMBER void own(int k, const Direction& v) const { set(kRowOwn + k, v); }
     AL_MEMBER vf own(int k) const { return Given::own(k); }
+    /// Sets what every kind must: Bsdf::albedo(), spread() and delta().
     AL_MEMBER void common(vf albedo, vf spread, vf delta) const {
         set(kRowAlbedo, albedo), set(kRowSpread, spread), set(kRowDelta, delta);
     }
 };
+/// f cos by channel, and the density of sample() per solid angle.
 struct Value {
     Direction colour;
     vf pdf;
 };
+/// The same f cos in all channels.
 AL_INLINE Value grey(vf f, vf pdf) { return {{f, f, f}, pdf}; }
 /// For a lobe that is sampled by its own value.
 AL_INLINE vf where(vm m, vf x) { return select(m, x, vf(0)); }
@@ -59,10 +67,12 @@ AL_INLINE vm aboveHorizon(const Given& p, const Direction& w) {
     return (p.number(kRowHasHorizon) == 0) | (dot(p.triple(kRowHorizon), w) * dot(p.axis(), w) > 0);
 }
 
+/// LobeLanes::prepare of a kind; lanes without a lobe are skipped in groups.
 template <class Kind> static void prepareBlock(float* block, uint32_t lanes) {
     for (int at = 0; at < kStride; at += ALPENGLOW_LANES)
         if (lanes >> at & ((1u << ALPENGLOW_LANES) - 1)) Kind::prepare(Rows(block + at));
 }
+/// LobeLanes::evaluate of a kind.
 template <class Kind> static void evaluateBlock(const float* block, uint32_t lanes, const float* w, float* value) {
     for (int at = 0; at < kStride; at += ALPENGLOW_LANES) {
         if (!(lanes >> at & ((1u << ALPENGLOW_LANES) - 1))) continue;
@@ -73,6 +83,7 @@ template <class Kind> static void evaluateBlock(const float* block, uint32_t lan
         out.set(kRowPdf, v.pdf);
     }
 }
+/// LobeLanes::sample of a kind.
 template <class Kind> static void sampleBlock(const float* block, uint32_t lanes, const float* u, float* drawn) {
     for (int at = 0; at < kStride; at += ALPENGLOW_LANES) {
         if (!(lanes >> at & ((1u << ALPENGLOW_LANES) - 1))) continue;
@@ -92,6 +103,7 @@ template <class Kind> constexpr float etaOf() {
     if constexpr (requires { Kind::eta; }) return Kind::eta;
     else return 0;
 }
+/// The entry of a kind in the list of lobes.
 template <class Kind> constexpr LobeLanes lanesOf() {
     return {Kind::name,    Kind::doc,          Kind::distribution,  Kind::needs,      traitsOf<Kind>(),
             etaOf<Kind>(), prepareBlock<Kind>, evaluateBlock<Kind>, sampleBlock<Kind>};

@@ -12,10 +12,12 @@ using Direction = Triple<vf>;
 struct Basis {
     Direction t, u, n;
 };
+/// n: unit.
 AL_INLINE Basis basisAbout(const Direction& n) {
     const vf s = copySign(vf(1), n.z), a = vf(-1) / (s + n.z), b = n.x * n.y * a;
     return {{mad(s * n.x, n.x * a, vf(1)), s * b, -s * n.x}, {b, mad(n.y, n.y * a, s), -n.y}, n};
 }
+/// A vector given by its components along t, u and n.
 AL_INLINE Direction toWorld(const Basis& f, const Direction& v) { return mad3(f.t, v.x, mad3(f.u, v.y, times(f.n, v.z))); }
 
 /// Cosine and sine of `turns`, 0 to 1, by series within an eighth of a turn.
@@ -32,6 +34,7 @@ AL_INLINE Pair<vf> unitCircle(vf turns) {
     return {flipSign(select(odd, s, c), (bits + 1u) << 30), flipSign(select(odd, c, s), bits << 30)};
 }
 
+/// The square root; 0 for negative x.
 AL_INLINE vf rootOf(vf x) { return rootLanes(maxLanes(x, vf(0))); }
 
 /// Cosine-weighted direction about +z; density cos / pi.

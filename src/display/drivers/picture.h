@@ -4,6 +4,7 @@
 
 namespace alpenglow::display {
 
+/// Collects rows into an Image and encodes it at the end.
 class PictureDriver : public Driver {
 public:
     bool open(const DriverSetup&, Diagnostics&) override;

@@ -5,6 +5,7 @@
 
 namespace alpenglow::display {
 
+/// Kinds of blocks, by the names of Direct3D.
 enum class Block { Bc1, Bc1Alpha, Bc2, Bc3, Bc4, Bc4Signed, Bc5, Bc5Signed, Bc6, Bc6Signed, Bc7 };
 
 /// Bytes of a block.

@@ -17,6 +17,7 @@ struct DecodeContext {
     bool file = false; ///< the name is a file name: unknown formats are read through the module (foreign.h)
     /// Reports `cannot read "name": why` and returns nothing.
     std::nullopt_t refuse(const std::string& why, Rie code = Rie::BadFile) const;
+    /// Warns about a file that is read all the same.
     void warn(const std::string& why) const;
     /// The limits on sides, channels, bytes and expansion; false after an error. Ask before allocating.
     bool sizeAllowed(uint64_t width, uint64_t height, uint64_t channels) const;

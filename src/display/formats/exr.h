@@ -10,6 +10,7 @@
 
 namespace alpenglow::display {
 
+/// Bytes in memory as OpenEXR reads them.
 class MemoryStream : public Imf::IStream {
 public:
     MemoryStream(Bytes b, const std::string& name) : Imf::IStream(name.c_str()), bytes_(b) {}
@@ -28,6 +29,7 @@ private:
     uint64_t at_ = 0;
 };
 
+/// An OutputFile as OpenEXR writes it. Errors show in OutputFile::ok().
 class FileStream : public Imf::OStream {
 public:
     explicit FileStream(OutputFile& f) : Imf::OStream(f.path().c_str()), file_(f) {}
@@ -41,6 +43,7 @@ private:
     OutputFile& file_;
 };
 
+/// The same rows: OpenEXR has row vectors, too.
 inline Matrix toMatrix(const Imath::M44f& m) {
     Matrix r;
     for (int i = 0; i < 4; ++i)
@@ -56,6 +59,7 @@ inline Imath::M44f fromMatrix(const Matrix& m) {
 
 /// Text, numbers and the matrices of a header, into the picture's.
 void readAttributes(const Imf::Header&, Image&);
+/// The reverse of readAttributes().
 void writeAttributes(const Image&, Imf::Header&);
 /// Decodes a file whose first part has deep scan lines, after its headers were checked.
 std::optional<Image> decodeDeep(Imf::MultiPartInputFile&, const DecodeContext&);

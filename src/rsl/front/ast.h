@@ -15,9 +15,13 @@
 
 namespace alpenglow::rsl {
 
+/// The class of a variable: one value for all points, or one for each (RISpec 3.2, 11.1).
 enum class Storage : uint8_t { Unspecified, Uniform, Varying };
+/// The kinds of shaders (RISpec 3.2, 9).
 enum class ShaderKind : uint8_t { Surface, Displacement, Light, Volume, Imager, Transformation };
+/// The keyword of a shader definition: "surface".
 const char* toString(ShaderKind);
+/// The bit of a kind in Shadeop::contexts.
 Context contextOf(ShaderKind);
 
 /// Position in the file set of a Program: file index, line and column from 1.
@@ -48,6 +52,7 @@ struct Symbol {
     Place place;
 };
 
+/// What an expression is; behind each kind the members of Expr that it uses.
 enum class ExprKind : uint8_t {
     Number,      ///< number
     String,      ///< text
@@ -72,6 +77,7 @@ enum class ExprKind : uint8_t {
     Part,     ///< args[0]->text: a member of a structure; of an array of them, the array of that member of all
     Construct ///< a structure from its members, which args are
 };
+/// The operator of Unary, Binary and Assign.
 enum class ExprOp : uint8_t {
     None,
     Add,
@@ -93,6 +99,7 @@ enum class ExprOp : uint8_t {
     Assign
 };
 
+/// A token and its value, behind the positional arguments of a call or a statement.
 struct NamedArg {
     /// Where the name comes from. A name that is no literal stands as a pair of its own, without a name, before the pair that it
     /// names: its value is a string, which is known when the kernel is built, or only when it runs (ir/build_names.cpp).
@@ -108,6 +115,7 @@ struct NamedArg {
     Name named = Name::Written;
 };
 
+/// An expression, or the place of an assignment. Before checking `type` and what calls are bound to are not set.
 struct Expr {
     ExprKind kind{};
     ExprOp op = ExprOp::None;
@@ -128,6 +136,7 @@ struct Expr {
     Function* function = nullptr; ///< user's function, or the RSL body of a Lowering::Rsl shadeop (then shadeop is set too)
 };
 
+/// What a statement is; of those about light the members of Stmt that they use.
 enum class StmtKind : uint8_t {
     Block,
     Declare,
@@ -144,6 +153,7 @@ enum class StmtKind : uint8_t {
     Gather       ///< exprs: P, dir, angle, samples; category; pairs; body, elseBody
 };
 
+/// A statement.
 struct Stmt {
     StmtKind kind{};
     Place place;
@@ -165,6 +175,7 @@ struct Stmt {
     Function* definition = nullptr; ///< Declare: the place of a nested function's definition (no declarators)
 };
 
+/// A function of the shader, or a method of a class or a structure.
 struct Function {
     std::string name;
     Type result;
@@ -181,6 +192,7 @@ struct Function {
 /// What the light() of a class is called by now where it gave nothing and the samples of the class light instead.
 inline constexpr const char* kReplacedLight = "__light";
 
+/// A parameter that scenes set.
 struct ShaderParameter {
     Symbol* symbol = nullptr;
     ExprPtr defaultValue;
@@ -198,6 +210,7 @@ struct StructMember {
 
 /// A structure as the shader declares it.
 struct StructType {
+    /// A method, by the place of its definition.
     struct Method {
         std::string name;
         Place place;
@@ -210,6 +223,7 @@ struct StructType {
     Place place;
 };
 
+/// A shader, or a class as one of the kinds of shaders that it can be.
 struct Shader {
     ShaderKind kind{};
     bool object = false;           ///< made from a class: the body begins with the members, then the methods
@@ -244,6 +258,7 @@ struct Program {
     std::shared_ptr<const Program> written;
 };
 
+/// What preprocessing and checking depend on besides the text.
 struct FrontOptions {
     std::vector<std::string> includePaths;
     /// Whose predefined macros there are: "prman", "3delight" (also when empty), "aqsis", "bmrt", ... "rispec" has none, and
@@ -260,6 +275,7 @@ struct FrontOptions {
 
 /// Preprocesses, parses and checks. Returns null when there were errors (all of them reported, none that follow from another).
 std::unique_ptr<Program> compileFile(const std::string& path, const FrontOptions&, Diagnostics&);
+/// The same for a text; `name` stands for its file in messages.
 std::unique_ptr<Program> compileText(const std::string& text, const std::string& name, const FrontOptions&, Diagnostics&);
 
 /// A predefined variable (RISpec 3.2, section 12) in one kind of shader.

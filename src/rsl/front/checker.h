@@ -11,9 +11,11 @@
 
 namespace alpenglow::rsl::front {
 
+/// Checks one unit; used once.
 class Checker {
 public:
     Checker(SourceSet& s, Unit& u, Program& p) : sources_(s), main_(u), program_(p), structures_(p.structs) {}
+    /// Checks all shaders and functions and moves them to the program. Errors are in the set.
     void run();
     /// For lint: warns of calls that are floats because of arithmetic with a number, although a tuple is wanted.
     void warnOfNumbers();

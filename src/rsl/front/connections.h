@@ -14,6 +14,7 @@ struct ConnectionPlace {
     auto operator<=>(const ConnectionPlace&) const = default;
 };
 
+/// What gives the value of a connected parameter.
 struct Connected {
     std::string handle;  ///< of the co-shader
     std::string output;  ///< its parameter

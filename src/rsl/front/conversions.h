@@ -26,6 +26,7 @@ int castCost(Base from, Base to);
 /// Cost of use as a condition: Bool, or a number, or a tuple, against zero.
 int conditionCost(Base from);
 
+/// One meaning of a binary operator.
 struct Operation {
     Base operand; ///< both operands are brought to this type
     Base result;
@@ -34,7 +35,9 @@ struct Operation {
 };
 /// What `left op right` means, if anything.
 std::optional<Operation> operation(ExprOp, Base left, Base right);
+/// The operator as it is written.
 const char* spelling(ExprOp);
+/// Whether it is a point, vector or normal.
 bool isPointLike(Base);
 
 } // namespace alpenglow::rsl::front

@@ -8,6 +8,7 @@ namespace alpenglow::rsl {
 
 /// A structure for who shows shaders; types in words.
 struct StructSummary {
+    /// A member, with the class and brackets in the type.
     struct Member {
         std::string type, name;
         Place place;

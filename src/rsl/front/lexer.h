@@ -4,6 +4,7 @@
 
 namespace alpenglow::rsl::front {
 
+/// Kinds of tokens.
 enum class Tok : uint8_t {
     End,
     Identifier,
@@ -13,6 +14,7 @@ enum class Tok : uint8_t {
     Invalid ///< a character that starts nothing, or a string without end; an error only if it reaches the parser
 };
 
+/// A token; its text lives as long as the SourceSet.
 struct Token {
     Tok kind = Tok::End;
     bool lineStart = false; ///< first on its line
@@ -20,15 +22,19 @@ struct Token {
     bool noExpand = false;  ///< a macro's name inside its own expansion
     Place place;
     std::string_view text;
+    /// Whether it is this word or sign; never true for numbers and strings.
     bool is(std::string_view s) const { return text == s && (kind == Tok::Punct || kind == Tok::Identifier); }
 };
 
+/// Reads one text from its beginning to its end.
 class Lexer {
 public:
     Lexer(SourceSet&, int file);
     /// Over another text, which must stay alive; places name `file`.
     Lexer(SourceSet&, int file, std::string_view text);
+    /// The next token; Tok::End at the end, again and again.
     Token next();
+    /// The next token, which next() then returns; valid until next().
     const Token& peek();
     int file() const { return file_; }
     /// Later places count `line` for the line after the current one, under file index `file` (#line).

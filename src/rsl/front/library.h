@@ -9,6 +9,7 @@ namespace alpenglow::rsl::front {
 
 /// One text of src/rsl/library: a file NAME.sl that defines NAME.
 struct LibraryText {
+    /// What the text defines.
     enum class Kind : uint8_t { Function, Structure, Class };
     Kind kind;
     const char *name, *text;
@@ -19,6 +20,7 @@ std::span<const LibraryText> libraryTexts();
 /// Macros of a text of the library, with what they stand for.
 using Defines = std::vector<std::pair<std::string, std::string>>;
 
+/// Adds texts of the library to a parser, each at most once.
 class Library {
 public:
     /// Both must outlive it.

@@ -29,9 +29,11 @@ ExprPtr zeroOf(Base, Place);
 /// `varying` and the height from the operands.
 void settle(Expr&);
 
+/// The pass; used once.
 class Lowering {
 public:
     Lowering(Program& p, SourceSet& s, Checker& c) : program_(p), sources_(s), checker_(c), structures_(p.structs) {}
+    /// Lowers the whole program.
     void run();
 
 private:

@@ -22,12 +22,14 @@ inline void adopt(Expr& parent, ExprPtr child) {
     parent.args.push_back(std::move(child));
 }
 
+/// The use of a variable by its name, before checking.
 inline ExprPtr variable(const std::string& name, Place place) {
     auto e = node(ExprKind::Variable, place);
     e->text = name;
     return e;
 }
 
+/// A statement without contents.
 inline StmtPtr make(StmtKind kind, Place place) {
     auto s = std::make_unique<Stmt>();
     s->kind = kind;

@@ -7,6 +7,7 @@
 
 namespace alpenglow::rsl::front {
 
+/// One word and where it stands.
 struct OslWord {
     enum class Kind : uint8_t { Name, Number, String, Sign, Directive };
     Kind kind;

@@ -38,6 +38,7 @@ struct Unit {
     mutable bool missed = false; ///< an unknown name may be declared in text that is missing
 };
 
+/// Builds the syntax tree of a unit from one or more texts.
 class Parser {
 public:
     explicit Parser(SourceSet& s) : sources_(s) {}
@@ -173,7 +174,9 @@ private:
     size_t lastError_ = size_t(-1);
 };
 
+/// The type of a keyword; nothing for other words.
 std::optional<Base> baseNamed(std::string_view);
+/// The kind of a keyword that begins a shader; nothing for other words.
 std::optional<ShaderKind> shaderKindNamed(std::string_view);
 
 } // namespace alpenglow::rsl::front

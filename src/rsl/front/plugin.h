@@ -17,9 +17,11 @@ inline constexpr const char* kPluginSection = "Plug-ins";
 /// that changes from run to run.
 inline constexpr const char* kPluginSymbol = "rslplugin:";
 
+/// A loaded plug-in and the functions that shaders can call.
 struct Plugin {
     std::string name, path;
     std::vector<Shadeop> functions; ///< Lowering::Service, sorted by name, one for each name
+    /// The function of that name; null if there is none.
     const Shadeop* find(const std::string& function) const {
         for (const Shadeop& f : functions)
             if (f.name == function) return &f;

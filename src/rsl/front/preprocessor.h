@@ -5,16 +5,19 @@
 
 namespace alpenglow::rsl::front {
 
+/// One `#pragma annotation`.
 struct Annotation {
     std::string key, value;
     size_t token = 0; ///< index of the token that follows it
 };
 
+/// A text behind the preprocessor.
 struct Preprocessed {
     std::vector<Token> tokens; ///< the last one is Tok::End
     std::vector<Annotation> annotations;
     std::vector<std::string> dependencies;
     bool incomplete = false; ///< an include was missing: unknown names later on may be its fault
+    /// An include that was not found.
     struct Missing {
         Place place;
         std::string name;

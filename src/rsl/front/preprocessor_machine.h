@@ -33,6 +33,7 @@ struct Frame {
     bool barrier = false; ///< reading stops here until the frame is taken away
 };
 
+/// Runs over one main text and what it includes; used once.
 class Preprocessor {
 public:
     Preprocessor(SourceSet& s, const FrontOptions& o) : sources_(s), options_(o) {}

@@ -9,10 +9,10 @@
 
 namespace alpenglow::rsl {
 
-/// ir::Input::name: what fills an input.
-/// Variable: a vector along Ng, of any length. passes/normal_side.h
+/// A variable of the compiler's own: a vector along Ng, of any length (passes/normal_side.h).
 inline constexpr char kSideNormal[] = "__side";
 
+/// ir::Input::name: what fills an input.
 struct InputName {
     enum class Kind : uint8_t {
         Variable,     ///< a predefined variable: "P"
@@ -29,16 +29,20 @@ struct InputName {
     bool length = false;
     std::string from, to; ///< Space
 
+    /// Reads a name; whatever has no prefix is a variable.
     static InputName parse(std::string_view);
     static InputName parameter(std::string_view name) { return {Kind::Parameter, std::string(name), false, false, {}, {}}; }
+    /// What gather() sends to this parameter, or the length of that.
     static InputName sent(std::string_view name, bool length = false) {
         return {Kind::Sent, std::string(name), false, length, {}, {}};
     }
+    /// The matrix from one space to the other.
     static InputName space(std::string_view from, std::string_view to) {
         return {Kind::Space, {}, false, false, std::string(from), std::string(to)};
     }
     /// Under it the caller of the compiler says what there is, too: KernelOptions::stringParameters (HeardOutput, HeardMember).
     static InputName displacement(std::string_view name) { return {Kind::Displacement, std::string(name), false, false, {}, {}}; }
+    /// A member that displacement() leaves, or its length.
     static InputName left(std::string_view member, bool length = false) {
         return {Kind::Displacement, std::string(member), true, length, {}, {}};
     }
@@ -67,16 +71,20 @@ struct OutputName {
     static OutputName parse(std::string_view);
     /// A variable or an output as displays name it.
     static OutputName of(std::string_view name) { return plain(What::Value, name); }
+    /// Its derivative by u, or v.
     static OutputName du(std::string_view name) { return plain(What::Du, name); }
     static OutputName dv(std::string_view name) { return plain(What::Dv, name); }
+    /// Whether the output was made.
     static OutputName given(std::string_view name) { return plain(What::Given, name); }
     /// Of such a name the output's; empty for any other.
     static std::string_view givenName(std::string_view);
+    /// How much of it comes through.
     static OutputName slope(std::string_view name) { return plain(What::Slope, name); }
     /// Any parameter, and how it changes.
     static OutputName parameterOf(std::string_view name, int element = -1, What what = What::Value) {
         return {what, true, false, false, std::string(name), element, 0};
     }
+    /// A member that displacement() leaves, its length, or its derivatives.
     static OutputName left(std::string_view member, bool length = false, What what = What::Value) {
         return {what, true, true, length, std::string(member), -1, 0};
     }
@@ -101,6 +109,7 @@ struct HeardOutput {
     int kind = 0;         ///< ir::Kind of an element
     int length = 0;       ///< of an array; 0: none
     bool varying = false; ///< points differ
+    /// Nothing for any other text.
     static std::optional<HeardOutput> parse(const std::string&);
     std::string text() const;
 };
@@ -134,10 +143,13 @@ struct PairName {
     int element = -1; ///< Send: of an array that is sent element by element
     To to = To::Light;
     bool length = false; ///< Send: how many elements of the array count, "send:surface:NAME#"
+    /// Reads a name; whatever has no prefix is Plain.
     static PairName parse(std::string_view);
+    /// A value, or an element of it, for a parameter of shaders of that kind.
     static PairName send(std::string_view name, int element = -1, To to = To::Light, bool length = false) {
         return {Kind::Send, std::string(name), element, to, length};
     }
+    /// The value of an output for lights that query it.
     static PairName surface(std::string_view name) { return {Kind::Surface, std::string(name), -1, To::Light, false}; }
     std::string text() const;
 };
@@ -160,6 +172,7 @@ inline constexpr char kPairUniform[] = "__uniform"; ///< the variable that takes
 
 /// ir::Site::resultNames of a query: its answer, and before that of an array of open length how long it is.
 std::string lengthResult(std::string_view name);
+/// Whether a result is such a length.
 bool isLengthResult(std::string_view name);
 /// Whether a result is an element of an array.
 bool isElementResult(std::string_view name);
@@ -190,6 +203,7 @@ inline constexpr char kEntering[] = "subsurface()";
 inline constexpr char kAnyChannel = '?';
 /// A name as outputchannel() has it: without "light:" or "local:", which keep the channel where it is made.
 inline constexpr std::string_view kKeptChannels[] = {"light:", "local:"};
+/// A name split in two.
 struct ChannelName {
     std::string name;
     bool kept = false;

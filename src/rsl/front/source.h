@@ -10,16 +10,20 @@
 
 namespace alpenglow::rsl::front {
 
+/// The texts, numbered from 0, and the messages about them until flush().
 class SourceSet {
 public:
     /// Adds a text; `line` and `column` of its places count from 1. The text's address stays valid.
     int add(std::string name, std::string text);
     /// A view of file `of` whose lines are counted `delta` higher, under another name (#line).
     int addView(int of, std::string name, int delta);
+    /// The text of a file; of a view that of the file.
     const std::string& text(int file) const {
         return entries_[file].view >= 0 ? text(entries_[file].view) : *entries_[file].text;
     }
+    /// The name for messages.
     const std::string& name(int file) const { return entries_[file].name; }
+    /// All of them, by number.
     std::vector<std::string> names() const;
     /// Keeps a string alive as long as the set.
     std::string_view keep(std::string);

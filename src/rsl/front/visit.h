@@ -59,6 +59,7 @@ template <class S, class F> void everyStmt(const Stmt& s, S&& statement, F&& exp
     eachPart(s, [&](const Expr& e) { everyExpr(e, expression); });
     eachBody(s, [&](const StmtPtr& b) { everyStmt(*b, statement, expression); });
 }
+/// Calls f(const Expr&) for every expression of the statement and those below it.
 template <class F> void everyExpr(const Stmt& s, F&& f) {
     everyStmt(s, [](const Stmt&) {}, f);
 }

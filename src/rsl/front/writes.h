@@ -5,6 +5,7 @@
 
 namespace alpenglow::rsl::front {
 
+/// Whether a call writes an argument.
 enum class Writes : uint8_t {
     No,
     Perhaps, ///< of a method of another shader: which it is, and so its parameters, is known when that is bound

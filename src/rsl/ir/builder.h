@@ -31,11 +31,14 @@ using DirectSet = std::set<std::tuple<int, int, int>>;
 /// A constant index in words, of whatever size.
 inline std::string indexText(float x) { return fmt::format("{:.9g}", std::trunc(x) + 0.f); }
 
+/// From the checked tree of one shader to the IR of one kernel; used once.
 class Builder : FunctionBuilder {
 public:
     Builder(Kernel& k, const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d, const DirectSet& direct)
         : FunctionBuilder(k, p.files, o, d), program_(p), shader_(s), direct_(direct) {}
+    /// Builds the kernel of the shader. False after an error, which is reported.
     bool buildShader();
+    /// Builds a kernel whose outputs are the values of all parameters, given those of the scene.
     bool buildDefaults(const std::vector<ParameterValue>& given);
     Inst* givenValue(const Symbol&, const ParameterValue&);
     Inst* defaultValue(const ShaderParameter&, int length);

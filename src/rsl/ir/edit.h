@@ -14,11 +14,13 @@ std::vector<Kind> resultKinds(const Inst&);
 /// instructions
 /// ("long form"): a pass then treats one result like several. Outside the passes a single result is the instruction itself.
 void toLongForm(Kernel&);
+/// Undoes toLongForm().
 void toShortForm(Kernel&);
 
 /// Visits every instruction in order, regions after their instruction.
 void forEach(Region&, const std::function<void(Inst*)>&);
 void forEach(const Region&, const std::function<void(const Inst*)>&);
+/// Of the region and all below it.
 size_t instructionCount(const Region&);
 
 /// True for instructions whose execution cannot be seen except through their results. Looks into regions.
@@ -28,6 +30,7 @@ bool isMovable(const Kernel&, const Inst&);
 
 /// True when `inst` is Const and every component equals `value`, signs of zero included.
 bool isConst(const Inst* inst, float value);
+/// Whether it is a number.
 inline bool isConst(const Inst* inst) { return inst->op == Op::Const; }
 
 /// Constants and inputs: they are at the front of the kernel and visible everywhere, also in functions.
@@ -45,12 +48,14 @@ public:
         while (inst->id < map_.size() && map_[inst->id]) inst = map_[inst->id];
         return inst;
     }
+    /// Replaces `from` from now on. Circles are not allowed.
     void set(const Inst* from, Inst* to) {
         if (from->id >= map_.size()) map_.resize(from->id + 1024);
         map_[from->id] = to;
     }
     /// True when the instruction is replaced.
     bool replaced(const Inst* inst) const { return inst->id < map_.size() && map_[inst->id] != nullptr; }
+    /// Replaces the arguments of an instruction.
     void apply(Inst* inst) {
         for (Inst*& a : inst->args) a = (*this)(a);
     }
@@ -66,6 +71,7 @@ using CopyMap = std::unordered_map<const Inst*, Inst*>;
 Inst* copyInst(Kernel&, const Inst*, CopyMap& map);
 /// Copies the body of a region into `out`; parameters must be in `map` already.
 void copyBody(Kernel&, const Region&, CopyMap& map, std::vector<Inst*>& out);
+/// The copy of an instruction; itself if there is none.
 inline Inst* mapped(const CopyMap& map, Inst* inst) {
     const auto it = map.find(inst);
     return it == map.end() ? inst : it->second;
@@ -79,6 +85,7 @@ public:
     Inst* constant(Kind, float value); ///< every component `value`
     Inst* constant(Kind, const std::vector<float>&);
     Inst* string(const std::string&);
+    /// Adds a leaf that the caller has made.
     void add(Inst* leaf) { front_.push_back(leaf); }
     /// Inserts what was made before the body of the kernel.
     void flush();

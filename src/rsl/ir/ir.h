@@ -14,6 +14,7 @@ namespace alpenglow::rsl::ir {
 enum class Kind : uint8_t { None, Bool, Float, Triple, Matrix, String, Array };
 int components(Kind); ///< Float 1, Triple 3, Matrix 16, String 1 (interned id), Bool 1
 
+/// What an instruction does; behind each op the members of Inst that it uses.
 enum class Op : uint8_t {
     // leaves
     Const,       ///< numbers[0..components): the value
@@ -70,15 +71,18 @@ enum class Op : uint8_t {
     // effects
     Output ///< index: Kernel::outputs; args[0] = value
 };
+/// As dumps of the IR name it.
 const char* name(Op);
 
 struct Inst;
+/// A block of instructions within another, or the body of the kernel.
 struct Region {
     std::vector<Inst*> params; ///< RegionParam instructions
     std::vector<Inst*> body;   ///< in order
     std::vector<Inst*> yields;
 };
 
+/// An instruction, and its result as a value. Kernel::pool owns it.
 struct Inst {
     Op op{};
     Kind kind{};               ///< kind of the (single) result; None with several results (then `results`)
@@ -108,6 +112,7 @@ struct Input {
     bool constant = false; ///< does not change over the surface: no derivatives, in build V too
     uint8_t order = 0;     ///< derivatives the kernel reads (passes/derivatives.h)
 };
+/// What a kernel writes; names are those of OutputName.
 struct OutputSlot {
     std::string name;
     Kind kind = Kind::Float;
@@ -159,6 +164,7 @@ struct OutputLight {
     OutputSlot output;
     bool light;
 };
+/// One kernel in static single assignment form with structured control flow.
 struct Kernel {
     std::string name;
     ShaderKind kind{};
@@ -171,6 +177,7 @@ struct Kernel {
     KernelFacts facts;
     std::deque<std::unique_ptr<Inst>> pool;
 
+    /// A new instruction with the next id, in no region yet.
     Inst* make(Op op, Kind result, std::vector<Inst*> args = {});
 };
 

@@ -9,10 +9,12 @@ namespace alpenglow::rsl::jit {
 /// is "off".
 std::string defaultCacheDirectory();
 
+/// One folder of kernels. Thread safe; processes may share the folder.
 class KernelCache {
 public:
     /// An empty directory name: no cache. The directory is made on the first store, for its owner only.
     explicit KernelCache(std::string directory, size_t maxBytes);
+    /// The kernel of that key; nothing if there is none or its file is damaged.
     std::optional<KernelFile> load(const std::string& key) const;
     /// Why the directory is neither read nor written, in a sentence that says what to do: it is another user's, or others can
     /// write to it.

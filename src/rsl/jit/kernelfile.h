@@ -9,6 +9,7 @@
 
 namespace alpenglow::rsl::jit {
 
+/// The contents of a file.
 struct KernelFile {
     std::string key; ///< its key in the cache
     std::vector<ir::Input> inputs;
@@ -24,6 +25,7 @@ struct KernelFile {
     std::string object;
 };
 
+/// The bytes of a file, with a digest.
 std::string pack(const KernelFile&);
 /// Nothing when the bytes are damaged. Shadeops are found again by name.
 std::optional<KernelFile> unpack(const std::string& bytes);

@@ -12,16 +12,19 @@ namespace alpenglow::rsl::jit {
 
 /// Instruction sets that code is made for. The level is chosen from the lane count and the machine, without LLVM.
 enum class Isa : int { Sse42 = 0, Sse42Fma = 1, Avx2 = 2, Avx512 = 3 };
+/// As messages and the cache key name it.
 const char* name(Isa);
 /// What this machine can run of what `lanes` asks for: 16 Avx512, 8 Avx2, 4 Sse42 (with FMA in 128-bit registers where there is
 /// FMA).
 Isa isaFor(int lanes);
 
+/// LLVM bitcode in memory that the program owns.
 struct BitcodeView {
     const unsigned char* data = nullptr;
     size_t size = 0;
 };
 
+/// A kernel to compile, and how. Pointers must outlive the call.
 struct ModuleRequest {
     const ir::Kernel* kernel = nullptr;
     int lanes = 16;
@@ -37,6 +40,7 @@ struct ModuleRequest {
     bool wantText = false; ///< fill ModuleResult::text with the optimised LLVM IR
 };
 
+/// The compiled kernel, or why there is none.
 struct ModuleResult {
     std::string object; ///< ELF relocatable file; empty on failure
     std::string error;

@@ -24,6 +24,7 @@ struct MessageSubject {
     const char* title;
     const MessageKind& first;
 };
+/// All subjects, in the order of the manual.
 std::span<const MessageSubject> messageSubjects();
 /// All kinds, in the order of the manual.
 std::span<const MessageKind* const> messageKinds();

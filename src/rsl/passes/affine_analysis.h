@@ -8,6 +8,7 @@
 
 namespace alpenglow::rsl::passes {
 
+/// What the analysis has found of one kernel.
 struct Dependence {
     /// By instruction id: the Requests that the value depends on, by ordinal. Empty: independent.
     std::vector<SiteSet> sites;
@@ -19,10 +20,12 @@ struct Dependence {
     /// Request.
     std::vector<uint8_t> channels;
     static constexpr uint8_t kGrey = 8;
+    /// The Requests that a value depends on.
     const SiteSet& of(const Inst* i) const {
         static const SiteSet none;
         return i->id < sites.size() ? sites[i->id] : none;
     }
+    /// The number of a Request in a SiteSet.
     size_t ordinal(const Inst* request) const { return static_cast<size_t>(ordinals[static_cast<size_t>(request->site)]); }
 };
 

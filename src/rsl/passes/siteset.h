@@ -9,6 +9,7 @@ namespace alpenglow::rsl::passes {
 
 class SiteSet {
 public:
+    /// The set of one.
     static SiteSet of(size_t n) {
         SiteSet s;
         s.add(n);

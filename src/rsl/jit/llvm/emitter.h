@@ -12,6 +12,7 @@
 
 namespace alpenglow::rsl::jit {
 
+/// A kernel that cannot be compiled; the text becomes ModuleResult::error.
 struct CodegenError : std::runtime_error {
     using std::runtime_error::runtime_error;
 };
@@ -35,10 +36,13 @@ struct ArrayStorage {
     int rows() const { return components * (1 + __builtin_popcount(shape.parts)); }
 };
 
+/// Writes the functions of one kernel into an LLVM module; used once.
 class Emitter {
 public:
     Emitter(const ModuleRequest&, const Shapes&, int width, llvm::Module&, llvm::Module& runtime);
+    /// The function of a kernel that does not suspend: a loop over strips.
     void emitLoopKernel();
+    /// The functions of a suspending kernel: one coroutine a strip.
     void emitCoroutine();
     const std::vector<std::string>& strings() const { return shared_->strings; }
     /// Bytes of KernelCall::memory that a kernel that does not suspend wants.

@@ -12,11 +12,14 @@ namespace alpenglow::rsl::jit {
 
 /// Derivative parts as bits, in the order of jets: du, dv, duu, duv, dvv.
 enum Part : uint8_t { kDu = 1, kDv = 2, kDuu = 4, kDuv = 8, kDvv = 16 };
+/// The parts of a jet of that order, 0 to 2.
 inline constexpr uint8_t partsOfOrder(int order) { return order <= 0 ? 0 : order == 1 ? 3 : 31; }
 
+/// How much of a value there is: lanes or one number, and which derivatives.
 struct Shape {
     bool varying = false;
     uint8_t parts = 0; ///< a part that is not here is exactly zero
+    /// Adds what the other has; true if that made a difference.
     bool join(Shape o) {
         const Shape before = *this;
         varying |= o.varying;

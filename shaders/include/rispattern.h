@@ -63,13 +63,15 @@ color risBlended(float op; color a, b;) { return color(risBlend(op, comp(a, 0), 
 float risRandom(float x, k;) { return cellnoise(1.37 * x + .5, k + .5); }
 /* What tells objects apart: source 0 Attribute "identifier" "id", 1 its name; 0 where the object has none. */
 float risObject(uniform float source;) {
-    uniform float id = 0;
+    uniform float number = 0;
     uniform string name = "";
+    float id = 0;
     if (source == 1) {
         attribute("identifier:name", name);
-        id = (name == "") ? 0 : stringhash(name);
+        if (name != "") id = stringhash(name);
     } else {
-        attribute("identifier:id", id);
+        attribute("identifier:id", number);
+        id = number;
     }
     return id;
 }

@@ -223,6 +223,7 @@ constexpr OptionDescription kHiderParameters[] = {
      "pinhole. A pixel is the mean of its own rays; PixelSamples, --spp and filters have no say."},
     {"maxsamples", "int", "", "64", Used,
      "raytrace, in a scene of RIS, which is drawn by path (docs/ris.md): samples per pixel, where PixelSamples says nothing."},
+    {"midpointratio", "", "", "", Ignored, "3Delight; \"depthfilter\" \"midpoint\" is half way between two surfaces"},
     {"minsamples", "", "", "", Ignored, "PRMan; --noise gives each pixel the samples that it needs"},
     {"mpcache", "", "", "", Ignored, "PRMan; what is shaded is kept as long as a tile needs it"},
     {"samplemotion", "int", "0", "1", Used,

@@ -32,7 +32,7 @@ DepthFilter depthFilterOf(const scene::Options& o, Diagnostics& diags) {
     const scene::Param* p = scene::find(o.hiderParams, "depthfilter");
     if (!p)
         if (auto i = o.values.find("hider:depthfilter"); i != o.values.end()) p = &i->second;
-    if (!p || p->strings.empty()) return DepthFilter::Min;
+    if (!p || p->strings.empty() || p->strings[0].empty()) return DepthFilter::Min; // Blender's exporters leave it empty
     if (auto d = depthFilterByName(p->strings[0])) return *d;
     diags.report(Severity::Error, Rie::Range, p->place, "depth filter \"" + p->strings[0] + "\" is not known; \"min\" is used",
                  nearestName(p->strings[0], {"min", "max", "average", "midpoint"}));

@@ -3,10 +3,13 @@
 #include "services/services.h"
 #include "texture/shadow.h"
 #include "world/unknownfilter.h"
+#include <fmt/format.h>
 
 namespace alpenglow::services {
 
 namespace {
+
+constexpr float kDefaultBias = .225f; ///< of shadow(), in world units: TextureSite::shadowBias0 where no option says another
 
 /// The filter that a point names; reports unknown names once.
 texture::Filter filterOf(const TextureSite& t, const ServiceCall& call, int lane) {
@@ -196,6 +199,25 @@ static void noteNoShadowMap(texture::Handle map, const ServiceCall& call) {
          {}});
 }
 
+/// Reports a map that sees so little depth that a bias of 0.225, which is the default, hides most of its shadows.
+static void noteLargeBias(texture::Handle map, float bias, const ServiceCall& call) {
+    thread_local std::pair<texture::Handle, std::string> last; // consecutive calls mostly look at the same map
+    if (!map || (map == last.first && map->path == last.second)) return;
+    last = {map, map->path};
+    const auto depths = texture::depthsOf(*map);
+    if (!depths || !(depths->second > depths->first) || bias < .25f * (depths->second - depths->first)) return;
+    call.diagnostics.reportOnce(
+        "largebias:" + map->path,
+        {Severity::Warning,
+         Rie::NoError,
+         call.place(),
+         fmt::format(
+             "shadow(): the bias of {:g} units, the default, hides shadows of map \"{}\", whose depths are from {:.3g} to {:.3g}",
+             bias, map->path, depths->first, depths->second),
+         "Option \"shadow\" \"float bias\" or the parameter \"bias\" sets one that is small beside what casts shadows",
+         {}});
+}
+
 void answerShadow(Services& answers, const ServiceCall& call) {
     const TextureSite& t = *call.s.map;
     const WorldImpl& world = answers.world();
@@ -214,12 +236,15 @@ void answerShadow(Services& answers, const ServiceCall& call) {
     }
     texture::Handle map = t.computed ? nullptr : t.map(world, place);
     noteNoShadowMap(map, call);
+    bool noted = false;
     call.each([&](int lane, const ShadePoint&) {
         if (t.computed) noteNoShadowMap(map = answers.mapOfName(std::bit_cast<int32_t>(call.at(0, lane)), place), call);
         const SurfaceBinding* binding = call.binding(world, lane);
         const auto bias = biasOf(answers.memo(), binding ? binding->attributes.get() : nullptr);
         const Matrix& toWorld = world.cameraToWorld();
         const texture::ShadowOptions o = shadowOptions(t, call, lane, bias, toWorld);
+        if (!noted && o.bias0 == kDefaultBias && o.bias1 == kDefaultBias) noteLargeBias(map, kDefaultBias, call);
+        noted = !t.computed;
         const auto vec = [&](size_t k) {
             const int r = t.rows[k];
             return Vec3d(call.at(r, lane), call.at(r + 1, lane), call.at(r + 2, lane));

@@ -5,6 +5,8 @@
 namespace alpenglow::texture {
 namespace {
 
+constexpr float kNoSurface = 1e30f; ///< a depth from here on: no surface; RI_INFINITY is 1e38
+
 /// Projection to NDC; false at or behind the eye plane.
 bool project(const Matrix& m, const Vec3d& p, double& x, double& y) {
     double w = p.x * m.m[0][3] + p.y * m.m[1][3] + p.z * m.m[2][3] + m.m[3][3];
@@ -132,6 +134,21 @@ const Texture* faceOf(Handle h, const Vec3d& p) {
 bool finite(const Vec3d& v) { return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z); }
 
 } // namespace
+
+std::optional<std::pair<float, float>> depthsOf(const Texture& of) {
+    if (of.deep || of.levels.empty()) return std::nullopt;
+    const Level& map = of.levels[0];
+    std::pair<float, float> range(kNoSurface, 0.f);
+    const int across = std::max(1, map.width / 64), down = std::max(1, map.height / 64);
+    for (int y = down / 2; y < map.height; y += down)
+        for (int x = across / 2; x < map.width; x += across) {
+            const size_t at = (size_t(y) * size_t(map.width) + size_t(x)) * size_t(map.channels);
+            const float z = map.codes.empty() ? map.values[at] : float(map.codes[at]) / 255;
+            if (z < kNoSurface) range = {std::min(range.first, z), std::max(range.second, z)};
+        }
+    if (range.first == kNoSurface) return std::nullopt;
+    return range;
+}
 
 Color shadowLookup(Handle map, const Vec3d& p, const Vec3d& ddx, const Vec3d& ddy, const ShadowOptions& o) {
     const Texture* h = faceOf(map, p);

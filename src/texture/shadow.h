@@ -18,6 +18,10 @@ struct ShadowOptions {
     float gapbias = 0; ///< for source: minimum thickness of surfaces in the map, world units
 };
 
+/// About the smallest and the largest depth of surfaces in a map, in its units, from 64 by 64 of its texels; nothing for a map
+/// without surfaces, a deep map and one with faces.
+std::optional<std::pair<float, float>> depthsOf(const Texture&);
+
 /// Shadowed fraction of the footprint, 0..1, for a point in world space with its differences between pixels. 0 outside of the
 /// map, behind its camera, and without a map or its matrices. The map's depth is z in camera space. For a map with faces, uses
 /// the face nearest to the point. Deep maps return opacity by channel; others the same for all.

@@ -74,6 +74,13 @@ TEST(DepthPasses, RunNoShadersAndHaveTheSameBits) {
         }
 }
 
+TEST(DepthPasses, AnEmptyFilterIsTheFirst) {
+    const Rendered empty = render("z", kThings, "Hider \"hidden\" \"string depthfilter\" [\"\"]\n"),
+                   first = render("z", kThings, "Hider \"hidden\" \"string depthfilter\" \"min\"\n");
+    for (int y = 0; y < 36; ++y)
+        for (int x = 0; x < 48; ++x) EXPECT_EQ(empty.picture.pixel(x, y)[0], first.picture.pixel(x, y)[0]) << x << ' ' << y;
+}
+
 TEST(DepthPasses, RunShadersThatAreMissed) {
     writeShader("halfclear", "surface halfclear() { Oi = .5; Ci = Oi; }");
     writeShader("tellsz", "surface tellsz() { if (u < 0) printf(\"%p\", P); Oi = 1; Ci = 1; }");

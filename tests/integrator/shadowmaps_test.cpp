@@ -13,12 +13,12 @@ namespace {
 
 constexpr int kWidth = 256; // a texel is 1/32 of the floor
 
-/// Depth along -y from the lamp; the map sees the floor from -4 to 4.
-std::string lampMap(const std::string& name) {
+/// Depth along -y from the lamp; the map sees the floor from -4 to 4, and the square at that depth.
+std::string lampMap(const std::string& name, float square = 2) {
     display::Image z = display::makeImage(kWidth, kWidth, {"z"});
     const auto inside = [](int i) { return i >= kWidth / 4 && i < 3 * kWidth / 4; };
     for (int y = 0; y < kWidth; ++y)
-        for (int x = 0; x < kWidth; ++x) z.pixel(x, y)[0] = inside(x) && inside(y) ? 2.0f : 4.0f;
+        for (int x = 0; x < kWidth; ++x) z.pixel(x, y)[0] = inside(x) && inside(y) ? square : 4.0f;
     Matrix camera{}, ndc{}; // rows are multiplied from the left
     for (auto* m : {&camera, &ndc})
         for (auto& row : m->m)
@@ -124,6 +124,24 @@ TEST(ShadowMaps, BiasOfCallAttributeAndOption) {
               0);
     // Evenly from 1 to 3: half of the comparisons pass.
     EXPECT_NEAR(floorOf("bias4", "Ci = shadow(map, P, \"bias0\", 1, \"bias1\", 3, \"samples\", 1024);").one(at(0)).x, .5, .01);
+}
+
+TEST(ShadowMaps, ADefaultBiasThatHidesShadowsIsSaid) {
+    // A tenth above the floor, nothing is .225 behind the square.
+    const auto low = [](const std::string& name, const std::string& body, const std::string& before = "") {
+        writeShader(name, "surface " + name + "(string map = \"\") { Oi = 1; " + body + " }\n");
+        return Scene(before + inWorld("Surface \"" + name + "\" \"string map\" " + lampMap("low.shd", 3.9f) + " " + kFloor),
+                     withShaders(Hider::Hidden));
+    };
+    Scene silent = low("lowbias", "Ci = shadow(map, P);");
+    EXPECT_EQ(silent.one(at(0)).x, 0);
+    EXPECT_NE(silent.messages().find("whose depths are from 3.9 to 4"), std::string::npos) << silent.messages();
+    Scene call = low("lowcall", "Ci = shadow(map, P, \"bias\", .01);"),
+          option = low("lowoption", "Ci = shadow(map, P);", "Option \"shadow\" \"float bias\" .01\n");
+    for (Scene* s : {&call, &option}) {
+        EXPECT_EQ(s->one(at(0)).x, 1);
+        EXPECT_EQ(s->messages(), "");
+    }
 }
 
 // A square light of half width 1/2: a point x of the floor sees the part of it beyond 2 - x, by the square's edge half way up.

@@ -198,4 +198,21 @@ TEST(KnownOptions, NamesForHints) {
     EXPECT_EQ(nearestName("maxdpth", known::knownNames(known::knownOptions(), "trace")), "maxdepth");
 }
 
+TEST(KnownOptions, AFurtherCallOfTheSameHiderKeepsItsParameters) {
+    // Blender's exporters give "depthfilter" and "jitter" by two calls.
+    const auto hider = [](const std::string& calls) {
+        const auto c = read(calls + "\nWorldBegin\nSphere 1 -1 1 360\nWorldEnd\n");
+        return c->frame().options.hiderParams;
+    };
+    const auto both = hider("Hider \"hidden\" \"string depthfilter\" \"midpoint\"\nHider \"hidden\" \"int jitter\" 0");
+    ASSERT_TRUE(scene::find(both, "depthfilter") && scene::find(both, "jitter"));
+    EXPECT_EQ(scene::find(both, "depthfilter")->strings[0], "midpoint");
+    EXPECT_EQ(scene::find(both, "jitter")->numbers[0], 0);
+    const auto later =
+        hider("Hider \"hidden\" \"string depthfilter\" \"midpoint\"\nHider \"hidden\" \"string depthfilter\" \"max\"");
+    ASSERT_EQ(later.size(), 1u);
+    EXPECT_EQ(later[0].strings[0], "max");
+    EXPECT_FALSE(scene::find(hider("Hider \"hidden\" \"int jitter\" 0\nHider \"path\" \"int guide\" 0"), "jitter"));
+}
+
 } // namespace knownoptions_test

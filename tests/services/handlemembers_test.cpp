@@ -71,6 +71,20 @@ TEST(HandleMembers, OneThatLacksItSaysSoWhenTheShaderRuns) {
     EXPECT_FLOAT_EQ(a.seen.z, 2);
 }
 
+TEST(HandleMembers, OneThatNoShaderHasIsSaidOnlyWhereItIsReached) {
+    // Without lights the loop has no turn; the co-shaders are not what its handles mean.
+    const Asked none = ask("unlit", R"(
+        shader lamps[] = getlights();
+        for (i = 0; i < arraylength(lamps); i += 1) Ci += color(lamps[i]->strength, 0, 0);
+        Ci += color(0, 4, 0);)");
+    EXPECT_EQ(none.said, "");
+    EXPECT_FLOAT_EQ(none.seen.x, 0);
+    EXPECT_FLOAT_EQ(none.seen.y, 4);
+    const Asked reached = ask("reached", "        for (i = 0; i < 1; i += 1) Ci += color(all[i]->strength, 4, 0);");
+    EXPECT_NE(reached.said.find("has no public member 'strength'; the value is nothing"), std::string::npos) << reached.said;
+    EXPECT_FLOAT_EQ(reached.seen.y, 4);
+}
+
 TEST(HandleMembers, WhatPrintsTakesElementsOfAnyType) {
     const Asked a = ask("printed", R"(
         shader h = getshader("b");

@@ -161,10 +161,15 @@ void displayChannel(Interpreter& in, const Call& c) {
     in.options.displayChannelParams[r.name] = in.bind(c, Use::Other);
 }
 
+/// A further call of the same hider keeps what it does not give anew: exporters set one parameter by each call.
 void hider(Interpreter& in, const Call& c) {
+    scene::ParamList given = in.bind(c, Use::Hider);
+    if (in.options.hider == c.text(0))
+        for (const scene::Param& p : in.options.hiderParams)
+            if (!scene::find(given, p.name)) given.push_back(p);
     in.options.hider = c.text(0);
     in.options.hiderPlace = c.place;
-    in.options.hiderParams = in.bind(c, Use::Hider);
+    in.options.hiderParams = std::move(given);
 }
 
 void colorSamples(Interpreter& in, const Call& c) {
@@ -310,7 +315,8 @@ std::vector<Request> pictureRequests() {
         {"DisplayChannel", "string channel; ..", k, kOptions, false, "Declares an output for use in a Display's mode.",
          "\"varying color diffuse\" \"string filter\" \"box\"", displayChannel},
         {"Hider", "string name; ..", k, kOptions, false,
-         "How the picture is made: \"hidden\", \"raytrace\" or \"path\" (docs/options.md). --hider overrides it.",
+         "How the picture is made: \"hidden\", \"raytrace\" or \"path\" (docs/options.md). --hider overrides it. A further call "
+         "for the same hider keeps the parameters that it does not give.",
          "\"hidden\" \"jitter\" [1]", hider},
         {"ColorSamples", "number[] nRGB; number[] RGBn", k, kOptions, false, "Colours of n samples, and how they become RGB.",
          "[1 1 1] [.3 .3 .4]", colorSamples},

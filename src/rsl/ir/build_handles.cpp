@@ -199,6 +199,7 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
         for (size_t i = 0; i < instances_.size(); ++i)
             if (instances_[i].binding->handle == h->text) {
                 certain_ = true;
+                anyHandle_ = false;
                 return coerce(code(i), kind);
             }
         report(handle.place, msg::kNullHandle);
@@ -215,6 +216,7 @@ Inst* Builder::forHandle(const Expr& handle, Kind kind, const std::function<Inst
         Inst* same = emit(Op::Equal, Kind::Bool, {h, leaves_.string(instances_[i].binding->handle)});
         const auto call = [&] {
             certain_ = false;
+            anyHandle_ = !some;
             return std::vector<Inst*>{coerce(code(i), kind)};
         };
         return branch(same, call, [&] { return from(n + 1); });

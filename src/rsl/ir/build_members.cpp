@@ -56,12 +56,13 @@ Type Builder::typeOfMember(const Expr& e) {
     return {Base::Float, 0};
 }
 
-/// The shader of this turn of forHandle() lacks what is asked. Where the handle may mean another, which has it, that is said when
-/// the shader runs and comes here with this one; else it is an error.
+/// The shader of this turn of forHandle() lacks what is asked. Where the handle may mean another, which has it, or what it means
+/// is only known when the shader runs, as with getlights() of a scene without lights, that is said when the shader comes here
+/// with this one; else it is an error.
 void Builder::lacks(const Place& place, size_t i, const Lack& lack, const std::function<bool(size_t)>& has) {
     if (!certain_ && isSelf(i)) return; // another shader of the handle has it
     const CoShader& c = *instances_[i].binding;
-    bool another = c.light && !certain_; // lights of other kinds may have it; these are queried at run time
+    bool another = anyHandle_ || (c.light && !certain_); // lights of other kinds may have it; these are queried at run time
     for (size_t n = 0; n < instances_.size() && !certain_; ++n) another |= n != i && has(n);
     if (another) complain(place, lack.whenRun);
     else report(place, lack.error);

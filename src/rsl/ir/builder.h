@@ -231,6 +231,7 @@ private:
     };
     Type typeOfMember(const Expr&);
     bool certain_ = true;                                   ///< forHandle(): the handle is known
+    bool anyHandle_ = false;                                ///< forHandle(): it may be that of any shader
     std::map<const Inst*, std::vector<std::string>> texts_; ///< arrays of texts that nothing writes to: their elements
     std::optional<std::set<const Symbol*>> written_;
     bool everWritten(const Symbol&);

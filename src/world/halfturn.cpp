@@ -1,29 +1,16 @@
 #include "world/halfturn.h"
+#include "scene/primitivekinds.h"
 #include <cmath>
-#include <string_view>
 
 namespace alpenglow::world {
 
 using geometry::Shape;
 using geometry::SurfacePoint;
 
-namespace {
-
-/// Position of the sweep angle among the numbers of a quadric; -1: it is none.
-int sweepOf(std::string_view kind) {
-    if (kind == "Sphere" || kind == "Cylinder" || kind == "Paraboloid") return 3;
-    if (kind == "Cone") return 2;
-    if (kind == "Torus") return 4;
-    return kind == "Hyperboloid" ? 6 : -1;
-}
-
-} // namespace
-
 bool HalfTurn::has(const Shape& s) {
     if (!s.exact() || s.placed() || !s.source().primitive) return false;
-    const auto& p = *s.source().primitive;
-    const int sweep = sweepOf(p.kind);
-    return sweep >= 0 && size_t(sweep) < p.numbers.size() && std::fabs(p.numbers[size_t(sweep)]) >= 360;
+    const auto& p = *s.source().primitive; // the last number of a quadric is its sweep angle
+    return scene::has(p.kind, scene::kQuadric) && !p.numbers.empty() && std::fabs(p.numbers.back()) >= 360;
 }
 
 HalfTurn::HalfTurn(const Shape& s) {

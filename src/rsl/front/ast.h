@@ -15,7 +15,7 @@
 
 namespace alpenglow::rsl {
 
-/// The class of a variable: one value for all points, or one for each (RISpec 3.2, 11.1).
+/// The class of a variable: one value for all points, or one for each (RISpec 3.2, 11).
 enum class Storage : uint8_t { Unspecified, Uniform, Varying };
 /// The kinds of shaders (RISpec 3.2, 9).
 enum class ShaderKind : uint8_t { Surface, Displacement, Light, Volume, Imager, Transformation };

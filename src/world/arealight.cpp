@@ -46,9 +46,10 @@ Emitter::Emitter(std::vector<const geometry::Shape*> shapes, std::vector<uint32_
 void Emitter::takeDiced(const std::function<bool(const geometry::Shape&)>& seenThrough) {
     facets_.clear();
     triangles_.clear();
+    groups_.clear();
     turns_.clear();
     for (Entry& e : entries_) {
-        e.facets = e.triangles = e.turn = -1;
+        e.facets = e.triangles = e.groups = e.turn = -1;
         if (!EmitterFacets::has(*e.shape)) {
             e.share = e.shape->area();
         } else {
@@ -64,9 +65,11 @@ void Emitter::takeDiced(const std::function<bool(const geometry::Shape&)>& seenT
         e.inner = e.sphere && scene::solidTakenAway(e.shape->attributes());
         e.through = e.sphere && seenThrough && seenThrough(*e.shape);
         // Through a transparent front, and in solids, the far side may be what is seen.
-        const bool seen = seenThrough && seenThrough(*e.shape);
-        const bool alone = !e.sphere && e.facets < 0 && !seen && scene::solidPath(e.shape->attributes()).empty();
-        if (alone && HalfTurn::has(*e.shape)) {
+        const bool both = (seenThrough && seenThrough(*e.shape)) || !scene::solidPath(e.shape->attributes()).empty();
+        if (FacetGroups::has(*e.shape)) {
+            e.groups = int(groups_.size());
+            groups_.emplace_back(*e.shape, both);
+        } else if (!e.sphere && e.facets < 0 && !both && HalfTurn::has(*e.shape)) {
             e.turn = int(turns_.size());
             turns_.emplace_back(*e.shape);
         }
@@ -96,8 +99,9 @@ void Emitter::weigh() {
 void Emitter::shinesTo(Shines to) {
     for (Entry& e : entries_) {
         e.front = {};
-        if (e.turn >= 0)
-            turns_[size_t(e.turn)].shinesTo(e.shape->oneSided() || to == Shines::Front ? 1 : to == Shines::Back ? -1 : 0);
+        const int side = e.shape->oneSided() || to == Shines::Front ? 1 : to == Shines::Back ? -1 : 0;
+        if (e.turn >= 0) turns_[size_t(e.turn)].shinesTo(side);
+        if (e.groups >= 0) groups_[size_t(e.groups)].shinesTo(side);
         if (to == Shines::Both && !e.shape->oneSided()) continue;
         e.front = normalsOf(*e.shape);
         if (to == Shines::Back && !e.shape->oneSided()) e.front = e.front.opposite();
@@ -142,7 +146,8 @@ float Emitter::areaPdf(const Entry& e, double share, const geometry::SurfacePoin
     float d2 = dot(d, d), cosine = std::fabs(dot(d, intersectsNormal(p))) / std::sqrt(d2);
     if (!(d2 > 0) || !(cosine > 1e-7f)) return 0;
     if (e.turn >= 0) share *= turns_[size_t(e.turn)].factor(p, from);
-    return float(share * density(e, p) * e.shape->turnedDensity(p, from) * d2 / cosine);
+    const double perArea = e.groups >= 0 ? groups_[size_t(e.groups)].density(p, from) : density(e, p);
+    return float(share * perArea * e.shape->turnedDensity(p, from) * d2 / cosine);
 }
 
 const Emitter::Entry& Emitter::entryAt(float choose) const {
@@ -205,6 +210,8 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample&
     if (angle) {
         const geometry::HitRef at = triangles_[size_t(e.triangles)].place(from, seen, u);
         e.shape->evaluateHit(at.prim, at.b1, at.b2, point, needs);
+    } else if (e.groups >= 0) {
+        groups_[size_t(e.groups)].place(from, u, time, point, needs);
     } else if (!place(e, from, u, time, point, needs)) {
         return false;
     }

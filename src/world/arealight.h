@@ -1,6 +1,7 @@
 // Light samples on emitters, and the density of a given hit (docs/design/light-transport.md).
 #pragma once
 #include "world/emitterfacets.h"
+#include "world/facetgroups.h"
 #include "world/halfturn.h"
 #include "world/trianglelamp.h"
 #include <functional>
@@ -87,6 +88,7 @@ private:
         uint32_t visibility = ~0u;
         int facets = -1;    ///< index in facets_; -1: rays hit the surface itself
         int triangles = -1; ///< index in triangles_; -1: not sampled by solid angle
+        int groups = -1;    ///< index in groups_; -1: facets are not chosen by what the lit point sees of them
         int turn = -1;      ///< index in turns_; -1: samples are not turned toward the lit point
         Cone front;         ///< bound of the directions in which light leaves
     };
@@ -110,6 +112,7 @@ private:
     std::vector<Entry> entries_;
     std::vector<EmitterFacets> facets_;
     std::vector<TriangleLamp> triangles_;
+    std::vector<FacetGroups> groups_;
     std::vector<HalfTurn> turns_;
     std::unordered_map<const geometry::Shape*, int> entryOf_;
     std::vector<FlatEmitter> flat_; ///< by entry; empty if some shape is not flat, or there are many

@@ -42,6 +42,29 @@ std::shared_ptr<scene::Primitive> polyhedron() {
     p->params = {points({-1, 0, 0, 1, 0, 0, 1, 1, .2f, -1, 1, .2f, 0, -1, 1})};
     return p;
 }
+/// A ball of quadrangles, and a triangle fan at each pole; some of its columns are left out at the end.
+std::shared_ptr<scene::Primitive> ball(int columns, int without) {
+    constexpr int kRows = 5;
+    auto p = std::make_shared<scene::Primitive>();
+    p->kind = "PointsPolygons";
+    std::vector<float> P;
+    for (int j = 0; j <= kRows; ++j)
+        for (int i = 0; i < columns; ++i) {
+            const double t = kPi * j / kRows, f = 2 * kPi * i / columns;
+            P.insert(P.end(), {float(std::sin(t) * std::cos(f)), float(std::sin(t) * std::sin(f)), float(.7 * std::cos(t))});
+        }
+    for (int j = 0; j < kRows; ++j)
+        for (int i = 0; i < columns - without; ++i) {
+            const int a = j * columns + i, b = j * columns + (i + 1) % columns, c = b + columns, d = a + columns;
+            const std::vector<int> face = j == 0           ? std::vector{a, d, c}
+                                          : j == kRows - 1 ? std::vector{a, d, b}
+                                                           : std::vector{a, d, c, b};
+            p->ints.push_back(int(face.size()));
+            p->ints2.insert(p->ints2.end(), face.begin(), face.end());
+        }
+    p->params = {points(P)};
+    return p;
+}
 std::shared_ptr<scene::Primitive> holed() {
     auto p = std::make_shared<scene::Primitive>();
     p->kind = "GeneralPolygon";
@@ -74,6 +97,8 @@ std::vector<Case> cases() {
             {"concave polygon", {polygon(concave)}, skew},
             {"polygon with a hole", {holed()}, skew},
             {"polyhedron", {polyhedron()}, skew},
+            {"mesh of a ball", {ball(12, 0)}, skew},
+            {"mesh with a gap", {ball(12, 4)}, skew},
             {"bilinear patch", {patch("bilinear", {-1, -1, 0, 1, -1, .4f, -1, 1, .3f, .8f, 1, -.2f})}, skew},
             {"bicubic patch", {patch("bicubic", bentNet())}, skew},
             {"bicubic mesh", {patchMesh("bicubic", 4, "nonperiodic", 4, "nonperiodic", bentNet())}, skew},
@@ -259,6 +284,28 @@ TEST_P(EmitterT1, SolidAngleOfEveryCell) {
         expectSameCells(drawn, counted, n, whole, what);
     }
 }
+/// Of a closed mesh that shines outwards, nearly all samples are where the lit point sees it; it is half of the surface at most.
+TEST(Emitter, MeshesAreSampledOnTheSideThatIsSeen) {
+    for (const bool inside : {false, true}) // where the normals point
+        for (const auto to : {Emitter::Shines::Both, inside ? Emitter::Shines::Back : Emitter::Shines::Front}) {
+            Case c{"ball", {ball(24, 0)}, translateMatrix(0, 0, 4)};
+            c.attributes.inside = inside;
+            Made m(c);
+            m.emitter->shinesTo(to);
+            std::mt19937 rng(unsigned(seedBase()) + 5);
+            std::uniform_real_distribution<float> one(0, 0x1.fffffep-1f);
+            const int n = 4000;
+            int facing = 0;
+            for (int i = 0; i < n; ++i) {
+                Emitter::Sample s;
+                geometry::SurfacePoint p;
+                ASSERT_TRUE(draw(*m.emitter, {0, 0, 0}, {one(rng), one(rng)}, 0, s, p));
+                facing += dot(p.P - Vec3(0, 0, 4), s.direction) < 0;
+            }
+            EXPECT_GT(facing, (to == Emitter::Shines::Both ? .8 : .88) * n) << inside << int(to);
+        }
+}
+
 /// A tube of radius r seen from a distance d of its axis shows the fraction acos(r / d) / pi of its points. Half a turn takes
 /// none of them to another, so they get what the points opposite would have, all of it or three quarters.
 TEST(Emitter, TubesAreSampledOnTheSideThatIsSeen) {

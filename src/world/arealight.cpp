@@ -141,13 +141,16 @@ geometry::Bounds Emitter::bounds() const {
     return b;
 }
 
-float Emitter::areaPdf(const Entry& e, double share, const geometry::SurfacePoint& p, const Vec3& from) const {
+float Emitter::asSeen(const Entry& e, double perArea, const geometry::SurfacePoint& p, const Vec3& from) {
     Vec3 d = intersectsAt(p) - from;
     float d2 = dot(d, d), cosine = std::fabs(dot(d, intersectsNormal(p))) / std::sqrt(d2);
     if (!(d2 > 0) || !(cosine > 1e-7f)) return 0;
+    return float(perArea * e.shape->turnedDensity(p, from) * d2 / cosine);
+}
+
+float Emitter::areaPdf(const Entry& e, double share, const geometry::SurfacePoint& p, const Vec3& from) const {
     if (e.turn >= 0) share *= turns_[size_t(e.turn)].factor(p, from);
-    const double perArea = e.groups >= 0 ? groups_[size_t(e.groups)].density(p, from) : density(e, p);
-    return float(share * perArea * e.shape->turnedDensity(p, from) * d2 / cosine);
+    return asSeen(e, share * (e.groups >= 0 ? groups_[size_t(e.groups)].density(p, from) : density(e, p)), p, from);
 }
 
 const Emitter::Entry& Emitter::entryAt(float choose) const {
@@ -206,12 +209,13 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample&
     out.visibility = e.visibility;
     if (e.sphere && outside(e, from, cap)) return sampleSphere(e, from, u, cap, share, out, point, needs);
     TriangleLamp::Seen seen;
+    double perArea = 0;
     const bool angle = e.triangles >= 0 && triangles_[size_t(e.triangles)].see(from, seen);
     if (angle) {
         const geometry::HitRef at = triangles_[size_t(e.triangles)].place(from, seen, u);
         e.shape->evaluateHit(at.prim, at.b1, at.b2, point, needs);
     } else if (e.groups >= 0) {
-        groups_[size_t(e.groups)].place(from, u, time, point, needs);
+        perArea = groups_[size_t(e.groups)].place(from, u, time, point, needs);
     } else if (!place(e, from, u, time, point, needs)) {
         return false;
     }
@@ -221,7 +225,8 @@ bool Emitter::sample(const Vec3& from, Vec2 u, float choose, float time, Sample&
     out.distance = length(d);
     if (!(out.distance > 0)) return false;
     out.direction = d / out.distance;
-    out.pdf = angle ? float(share / seen.total) : areaPdf(e, share, point, from);
+    if (angle) out.pdf = float(share / seen.total);
+    else out.pdf = e.groups >= 0 ? asSeen(e, share * perArea, point, from) : areaPdf(e, share, point, from);
     return out.pdf > 0 && std::isfinite(out.pdf);
 }
 

@@ -109,6 +109,8 @@ private:
     /// The shape chosen as seen from a point, and its probability.
     const Entry& entryFrom(const Vec3& from, float choose, double& share) const;
     float areaPdf(const Entry&, double share, const geometry::SurfacePoint&, const Vec3& from) const;
+    /// Per steradian, from a density per area.
+    static float asSeen(const Entry&, double perArea, const geometry::SurfacePoint&, const Vec3& from);
     std::vector<Entry> entries_;
     std::vector<EmitterFacets> facets_;
     std::vector<TriangleLamp> triangles_;

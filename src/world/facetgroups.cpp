@@ -9,7 +9,10 @@ using geometry::SurfacePoint;
 
 namespace {
 constexpr uint32_t kFewestFacets = 32, kMostFacets = 1u << 22;
-}
+
+/// Where a number lies in an interval, 0 to 1.
+double restOf(double x, double begin, double end) { return end > begin ? std::clamp((x - begin) / (end - begin), 0.0, 1.0) : .5; }
+} // namespace
 
 bool FacetGroups::has(const Shape& s) {
     if (s.exact() || s.placed() || s.trimmed() || s.facesRays() || !s.source().primitive) return false;
@@ -28,15 +31,16 @@ struct FacetGroups::Builder {
     double extent = 0; ///< makes places comparable to normals
 
     double coordinate(uint32_t t, int k) const { return k < 3 ? facets[t].centre[k] : .5 * extent * facets[t].normal[k - 3]; }
-    int widest(std::span<const uint32_t>) const;
+    std::pair<int, int> widest(std::span<const uint32_t>) const;
+    void sort(std::span<uint32_t>, int coordinate) const;
+    void makeStrips(std::span<uint32_t>, double area);
     void split(std::span<uint32_t>, int group, int groups);
-    void finish(int group, std::span<const uint32_t>);
+    void finish(int group, std::span<uint32_t>);
 };
 
-/// The coordinate in which some facets vary most: one of the place, or of the normal.
-int FacetGroups::Builder::widest(std::span<const uint32_t> some) const {
-    int best = 0;
-    double most = -1;
+/// The two coordinates in which some facets vary most, of the place or of the normal.
+std::pair<int, int> FacetGroups::Builder::widest(std::span<const uint32_t> some) const {
+    std::array<std::pair<double, int>, 6> variance;
     for (int k = 0; k < 6; ++k) {
         double sum = 0, squares = 0, area = 0;
         for (const uint32_t t : some) {
@@ -45,20 +49,23 @@ int FacetGroups::Builder::widest(std::span<const uint32_t> some) const {
             squares += a * x * x;
             area += a;
         }
-        const double variance = area > 0 ? squares / area - sum * sum / (area * area) : 0;
-        if (variance > most) most = variance, best = k;
+        variance[size_t(k)] = {area > 0 ? sum * sum / (area * area) - squares / area : 0, k};
     }
-    return best;
+    std::sort(variance.begin(), variance.end());
+    return {variance[0].second, variance[1].second};
+}
+
+void FacetGroups::Builder::sort(std::span<uint32_t> some, int k) const {
+    std::sort(some.begin(), some.end(), [&](uint32_t a, uint32_t b) {
+        const double x = coordinate(a, k), y = coordinate(b, k);
+        return x != y ? x < y : a < b;
+    });
 }
 
 /// Divides facets into `groups` groups, numbered from `group` on, of about equal area.
 void FacetGroups::Builder::split(std::span<uint32_t> some, int group, int groups) {
     if (groups == 1) return finish(group, some);
-    const int k = widest(some);
-    std::sort(some.begin(), some.end(), [&](uint32_t a, uint32_t b) {
-        const double x = coordinate(a, k), y = coordinate(b, k);
-        return x != y ? x < y : a < b;
-    });
+    sort(some, widest(some).first);
     double area = 0, until = 0;
     for (const uint32_t t : some) area += facets[t].area;
     size_t half = 0;
@@ -69,20 +76,40 @@ void FacetGroups::Builder::split(std::span<uint32_t> some, int group, int groups
     split(some.subspan(half), group + groups / 2, groups / 2);
 }
 
-void FacetGroups::Builder::finish(int group, std::span<const uint32_t> some) {
+/// About as many strips as each has facets.
+void FacetGroups::Builder::makeStrips(std::span<uint32_t> some, double area) {
+    const auto [across, along] = widest(some);
+    sort(some, across);
+    const double strips = std::max(1., std::floor(std::sqrt(double(some.size()))));
+    double until = 0;
+    for (size_t first = 0, end = 0; first < some.size(); first = end) {
+        const double wanted = until + area / strips;
+        do until += facets[some[end++]].area;
+        while (end < some.size() && until < wanted);
+        sort(some.subspan(first, end - first), along);
+        to.strips_.push_back({to.order_.size(), to.order_.size() + (end - first), until});
+        double ofStrip = 0;
+        for (size_t i = first; i < end; ++i) {
+            to.order_.push_back(some[i]);
+            to.cumulative_.push_back(ofStrip += facets[some[i]].area);
+        }
+    }
+}
+
+void FacetGroups::Builder::finish(int group, std::span<uint32_t> some) {
     const size_t g = size_t(group);
-    to.first_[g] = to.order_.size();
+    to.firstStrip_[g] = to.strips_.size();
     Vec3d centre(0.0), normal(0.0);
     double area = 0;
     for (const uint32_t t : some) {
         const Facet& f = facets[t];
         to.groupOf_[t] = uint8_t(group);
-        to.order_.push_back(t);
         centre += f.centre * f.area;
         normal += f.normal * f.area;
-        to.cumulative_.push_back(area += f.area);
+        area += f.area;
     }
-    to.first_[g + 1] = to.order_.size();
+    makeStrips(some, area);
+    to.firstStrip_[g + 1] = to.strips_.size();
     to.area_[g] = float(area);
     if (!(area > 0)) return;
     centre = centre / area;
@@ -141,23 +168,24 @@ void FacetGroups::shinesTo(int side) {
 }
 
 float FacetGroups::weigh(const Vec3& from, Row& weights) const {
-    float sum = 0;
-    for (size_t g = 0; g < kGroups; ++g) {
+    const float both = either_ ? 1.f : 0.f;
+    for (size_t g = 0; g < kGroups; ++g) { // no sum and no branch in it, so that it runs in lanes
         const float x = from.x - centre_[0][g], y = from.y - centre_[1][g], z = from.z - centre_[2][g];
-        const float d2 = std::max(x * x + y * y + z * z, 1e-30f);
+        const float d2 = std::max(x * x + y * y + z * z, 1e-30f), r2 = radius2_[g];
         const float c = side_ * (x * normal_[0][g] + y * normal_[1][g] + z * normal_[2][g]) / std::sqrt(d2);
         // The mean of max(0, t), or of |t|, over cosines t that are even between c - s and c + s.
-        const float s = std::max(spread_[g] + std::sqrt(radius2_[g] / std::max(d2, radius2_[g])) * .5f, 1e-3f);
-        const float one = c >= s ? c : c <= -s ? 0 : (c + s) * (c + s) / (4 * s);
-        const float other = c <= -s ? -c : c >= s ? 0 : (c - s) * (c - s) / (4 * s);
-        const float cosine = std::max(either_ ? one + other : one, floor_);
-        weights[g] = area_[g] * cosine / std::max(d2, std::max(radius2_[g], 1e-30f));
-        sum += weights[g];
+        const float s = std::max(spread_[g] + std::sqrt(r2 / std::max(d2, r2)) * .5f, 1e-3f),
+                    clamped = std::max(std::min(c, s), -s);
+        const float one = (clamped + s) * (clamped + s) / (4 * s) + std::max(c - s, 0.f);
+        const float other = (clamped - s) * (clamped - s) / (4 * s) + std::max(-c - s, 0.f);
+        weights[g] = area_[g] * std::max(one + both * other, floor_) / std::max(d2, std::max(r2, 1e-30f));
     }
+    float sum = 0;
+    for (const float w : weights) sum += w;
     return sum;
 }
 
-void FacetGroups::place(const Vec3& from, Vec2 u, float time, SurfacePoint& point, uint32_t needs) const {
+double FacetGroups::place(const Vec3& from, Vec2 u, float time, SurfacePoint& point, uint32_t needs) const {
     Row weights;
     const float sum = weigh(from, weights);
     double left = double(u.x) * sum;
@@ -165,15 +193,21 @@ void FacetGroups::place(const Vec3& from, Vec2 u, float time, SurfacePoint& poin
     while (g + 1 < kGroups && !(left < weights[g])) left -= weights[g++];
     while (g > 0 && !(weights[g] > 0)) --g; // rounding led to an empty one
     const double within = weights[g] > 0 ? std::clamp(left / weights[g], 0.0, 1 - 0x1p-53) : .5;
-    const double* const areas = cumulative_.data() + first_[g];
-    const size_t count = first_[g + 1] - first_[g];
-    const double at = within * areas[count - 1];
-    const size_t k = size_t(std::upper_bound(areas, areas + count - 1, at) - areas);
-    const double before = k ? areas[k - 1] : 0, width = areas[k] - before;
-    // The rest of the number gives the position on the facet; the root makes it uniform over a triangle.
-    const double side = std::sqrt(width > 0 ? std::clamp((at - before) / width, 0.0, 1.0) : .5);
-    const geometry::HitRef hit{order_[first_[g] + k], side * (1 - double(u.y)), side * double(u.y), &point, time};
+    // A strip by what is left of the first number, a facet by the second; what is left of both is uniform on the facet.
+    const Strip* const strips = strips_.data() + firstStrip_[g];
+    const size_t count = firstStrip_[g + 1] - firstStrip_[g];
+    const double at = within * strips[count - 1].until;
+    const auto ends = [](double x, const Strip& s) { return x < s.until; };
+    const Strip& strip = *std::upper_bound(strips, strips + count - 1, at, ends);
+    const double across = restOf(at, &strip == strips ? 0 : (&strip)[-1].until, strip.until);
+    const double* const areas = cumulative_.data() + strip.first;
+    const size_t facets = strip.end - strip.first;
+    const double along = double(u.y) * areas[facets - 1];
+    const size_t k = size_t(std::upper_bound(areas, areas + facets - 1, along) - areas);
+    const double side = std::sqrt(restOf(along, k ? areas[k - 1] : 0, areas[k])); // uniform over a triangle
+    const geometry::HitRef hit{order_[strip.first + k], side * (1 - across), side * across, &point, time};
     shape_->points({&hit, 1}, needs);
+    return densityOf(g, weights, sum);
 }
 
 double FacetGroups::density(const SurfacePoint& p, const Vec3& from) const {
@@ -181,7 +215,10 @@ double FacetGroups::density(const SurfacePoint& p, const Vec3& from) const {
     if (t >= groupOf_.size()) return 0;
     Row weights;
     const float sum = weigh(from, weights);
-    const size_t g = groupOf_[t];
+    return densityOf(groupOf_[t], weights, sum);
+}
+
+double FacetGroups::densityOf(size_t g, const Row& weights, float sum) const {
     return sum > 0 && area_[g] > 0 ? double(weights[g]) / sum / area_[g] : 0;
 }
 

@@ -16,8 +16,8 @@ public:
     FacetGroups(const geometry::Shape&, bool bothSides);
     /// Which side light leaves from: 1: that of the normal, -1: the opposite one, 0: both.
     void shinesTo(int side);
-    /// Samples a point for a lit one by a pair of numbers in [0, 1).
-    void place(const Vec3& from, Vec2 u, float time, geometry::SurfacePoint&, uint32_t needs) const;
+    /// Samples a point for a lit one by a pair of numbers in [0, 1); returns its density().
+    double place(const Vec3& from, Vec2 u, float time, geometry::SurfacePoint&, uint32_t needs) const;
     /// Density of place() per unit of area; 0: not a point of this shape.
     double density(const geometry::SurfacePoint&, const Vec3& from) const;
 
@@ -27,6 +27,7 @@ private:
     struct Builder;
     /// Weights of the groups as seen from a point; returns their sum.
     float weigh(const Vec3& from, Row& weights) const;
+    double densityOf(size_t group, const Row& weights, float sum) const;
 
     const geometry::Shape* shape_;
     bool bothSides_, closed_ = false;
@@ -37,10 +38,17 @@ private:
     Row centre_[3] = {}, normal_[3] = {}; ///< means of the groups
     Row radius2_ = {}, spread_ = {};      ///< squared radius of the centres; sine of the angle between normals and their mean
     Row area_ = {};
-    std::vector<uint8_t> groupOf_;               ///< by facet
-    std::vector<uint32_t> order_;                ///< facets, group after group
-    std::vector<double> cumulative_;             ///< area of the facets of order_ up to and including each
-    std::array<size_t, kGroups + 1> first_ = {}; ///< in order_
+    std::vector<uint8_t> groupOf_;   ///< by facet
+    std::vector<uint32_t> order_;    ///< facets, group after group and strip after strip
+    std::vector<double> cumulative_; ///< area of the facets of a strip up to and including each, in the order of order_
+    /// A part of a group across its first coordinate, whose facets follow each other in the second: the two numbers of a sample
+    /// choose strip and facet, so that sets of samples cover a group evenly.
+    struct Strip {
+        size_t first, end; ///< in order_
+        double until;      ///< area of the group's strips up to and including this one
+    };
+    std::vector<Strip> strips_;
+    std::array<size_t, kGroups + 1> firstStrip_ = {};
 };
 
 } // namespace alpenglow::world

@@ -138,9 +138,9 @@ FacetGroups::FacetGroups(const Shape& s, bool bothSides) : shape_(&s), bothSides
         const auto corner = [&](size_t i) { return Vec3d(m.P[m.index[3 * size_t(t) + i]]); };
         f.centre = (corner(0) + corner(1) + corner(2)) / 3;
         f.area = .5 * length(cross(corner(1) - corner(0), corner(2) - corner(0)));
-        if (!std::isfinite(f.area)) f.area = 0;
         const Vec3d normal = s.hitNormal(t, 1 / 3., 1 / 3.);
-        if (dot(normal, normal) > 0) f.normal = normalize(normal);
+        if (const double squared = dot(normal, normal); squared > 0 && std::isfinite(squared)) f.normal = normalize(normal);
+        if (!std::isfinite(f.area) || !std::isfinite(dot(f.centre, f.centre))) f = {}; // it has no order among the others
         for (int k = 0; k < 3; ++k) low[k] = std::min(low[k], f.centre[k]), high[k] = std::max(high[k], f.centre[k]);
         middle += f.centre * f.area;
         through += f.normal * f.area;
@@ -186,6 +186,7 @@ float FacetGroups::weigh(const Vec3& from, Row& weights) const {
 }
 
 double FacetGroups::place(const Vec3& from, Vec2 u, float time, SurfacePoint& point, uint32_t needs) const {
+    if (strips_.empty()) return 0;
     Row weights;
     const float sum = weigh(from, weights);
     double left = double(u.x) * sum;

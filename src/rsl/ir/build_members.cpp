@@ -56,9 +56,9 @@ Type Builder::typeOfMember(const Expr& e) {
     return {Base::Float, 0};
 }
 
-/// The shader of this turn of forHandle() lacks what is asked. Where the handle may mean another, which has it, or what it means
-/// is only known when the shader runs, as with getlights() of a scene without lights, that is said when the shader comes here
-/// with this one; else it is an error.
+/// Reports that the shader of this turn of forHandle() lacks what is asked. This is an error when the kernel is built if the
+/// handle can mean no other shader. Otherwise (another one has it, or only the run decides, as with getlights() of a scene
+/// without lights) it is reported when the shader reaches this place with such a handle.
 void Builder::lacks(const Place& place, size_t i, const Lack& lack, const std::function<bool(size_t)>& has) {
     if (!certain_ && isSelf(i)) return; // another shader of the handle has it
     const CoShader& c = *instances_[i].binding;

@@ -32,7 +32,7 @@ using DirectSet = std::set<std::tuple<int, int, int>>;
 inline std::string indexText(float x) { return fmt::format("{:.9g}", std::trunc(x) + 0.f); }
 
 /// From the checked tree of one shader to the IR of one kernel; used once.
-class Builder : FunctionBuilder {
+class Builder final : FunctionBuilder {
 public:
     Builder(Kernel& k, const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d, const DirectSet& direct)
         : FunctionBuilder(k, p.files, o, d), program_(p), shader_(s), direct_(direct) {}

@@ -33,7 +33,7 @@ protected:
 
     FunctionBuilder(Kernel& k, const std::vector<std::string>& files, const KernelOptions& o, Diagnostics& d)
         : k_(k), options_(o), diagnostics_(d), leaves_(k), files_(&files) {}
-    virtual ~FunctionBuilder() = default;
+    ~FunctionBuilder() = default;
     /// The value that a predefined variable has before the shader sets it.
     virtual Inst* initialGlobal(const std::string& name, Type) = 0;
 

@@ -4,6 +4,7 @@
 #include "world/storedphoton.h"
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace alpenglow::integrator {
 
@@ -85,11 +86,35 @@ struct PhotonJob {
     }
 };
 
+/// A photon that is sent to learn where mirrors and glass lead it (specularsearch.h). Camera space.
+struct PhotonProbe {
+    int light = -1;   ///< in WorldImpl::lights(): one that no ray meets
+    Vec3 origin, dir; ///< dir: unit
+    float time = 0;   ///< as a fraction of the open shutter
+    Vec2 cone;        ///< EmissionDraw::cone
+    SampleNumbers numbers{Sampler(0, 0, 0), 0};
+    int bounces = 0;    ///< it ends as it leaves this many mirrors
+    bool power = false; ///< asks for ProbeEnd::light
+};
+
+/// How a probe leaves its last mirror.
+struct ProbeEnd {
+    bool arrives = false;
+    Vec3 origin, dir; ///< dir: unit
+    Color light{0};   ///< fraction that mirrors and air leave; with PhotonProbe::power times the light of its shader, as
+                      ///< intensity over pi for a light with a place, as irradiance over pi for a distant one
+    float keptDiffuse = 1, keptSpecular = 1; ///< with PhotonProbe::power: LightValue::kept()
+    float chance = 1;                        ///< probability of all random choices on the way; `light` does not contain it
+    uint64_t way = 0;                        ///< hash of the surfaces and lobes on the way
+};
+
 /// Photons in flight.
 struct PhotonTrace {
     const PhotonJob* job = nullptr;
-    uint32_t first = 0;       ///< photon number for PathSample::path 0
-    std::vector<Color> power; ///< by path: power for throughput 1, in units of job->scale
+    std::span<const PhotonProbe> probes; ///< by path; empty: photons are stored
+    std::span<ProbeEnd> ends;            ///< by path, of the probes
+    uint32_t first = 0;                  ///< photon number for PathSample::path 0
+    std::vector<Color> power;            ///< by path: power for throughput 1, in units of job->scale
     struct From {
         int light = -1; ///< index in WorldImpl::lights()
         float kept = 1; ///< EmissionStart::kept

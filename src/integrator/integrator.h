@@ -89,6 +89,9 @@ private:
     std::unique_ptr<Impl> impl_;
 };
 
+/// Mirrors that the probes of a search meet on average, at some of the places where photons came to rest: its cost.
+double costOfSearches(const std::shared_ptr<const World>&, const CausticSeeds&, Diagnostics&);
+
 /// Size of the light guides of a world.
 struct LightGuideFigures {
     uint64_t samples = 0;         ///< light samples that were seen unoccluded

@@ -4,6 +4,7 @@
 #include "integrator/intersector.h"
 #include "integrator/photonstage.h"
 #include "integrator/pipeline.h"
+#include <algorithm>
 
 namespace alpenglow::integrator {
 
@@ -104,10 +105,15 @@ void PhotonEmission::addSeeds(std::span<const StoredPhoton> stored, uint32_t pas
         const auto at = [&](const ProbeEnd& end) {
             return end.origin + end.dir * (dot(seed.P - end.origin, e->dir) / dot(end.dir, e->dir));
         };
-        if (e->arrives) seed.dir = e->dir;
+        if (!e->arrives) {
+            seed.light = -1;
+            continue;
+        }
+        seed.dir = e->dir;
         for (int k = 0; k < 2; ++k)
-            if (e->arrives && e[k + 1].arrives) seed.columns[k] = (at(e[k + 1]) - at(*e)) / seed.step;
+            if (e[k + 1].arrives) seed.columns[k] = (at(e[k + 1]) - at(*e)) / seed.step;
     }
+    to.erase(std::remove_if(to.begin() + long(before), to.end(), [](const CausticSeed& s) { return s.light < 0; }), to.end());
 }
 
 void PhotonEmission::tellLights() const {

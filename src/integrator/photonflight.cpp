@@ -256,13 +256,20 @@ void PhotonFlight::extend(size_t b, BatchContext& c) {
     }
 }
 
-/// Notes how a probe leaves a point; true: that was its last mirror.
+/// Whether directions at the points of a batch may depend on random numbers: then paths by them are not found again.
+static bool drawsNumbers(const BatchContext& c) {
+    return c.bound && std::any_of(c.bound->sites.begin(), c.bound->sites.end(),
+                                  [](const SiteInfo& s) { return s.kind == SiteKind::Random; });
+}
+
+/// Notes how a probe leaves a point; true: it ends there.
 bool PhotonFlight::endsProbe(size_t b, size_t i, const BatchContext& c) {
     PhotonTrace& t = *photons_.photonTrace();
     const ScatterBlock& next = v_.next;
     const size_t point = b * kBlock + i;
     const PathRay& from = c.rays[point];
     ProbeEnd& end = t.ends[size_t(from.sample->path)];
+    if (drawsNumbers(c)) return true;
     end.chance /= next.scale[i];
     const uint64_t site = uint64_t(uint32_t(c.bindings[point])) << 32 | uint32_t(v_.sites[size_t(next.site[i])].number);
     end.way = mix64(end.way ^ mix64(site + 0x9e3779b97f4a7c15ull));

@@ -1,6 +1,7 @@
 // Photon emission: the distribution over lights (EmissionPlan), parameters of one emission (PhotonJob), and the stored photons.
 #pragma once
 #include "integrator/batchcontext.h"
+#include "integrator/photonprobe.h"
 #include "world/storedphoton.h"
 #include <algorithm>
 #include <cmath>
@@ -84,28 +85,6 @@ struct PhotonJob {
     SampleNumbers numbers(uint32_t photon) const {
         return {Sampler(SeedKey(seed ^ 0x70686f746f6e7331ull), int(pass >> 24), int(pass & 0xffffffu)), photon};
     }
-};
-
-/// A photon that is sent to learn where mirrors and glass lead it (specularsearch.h). Camera space.
-struct PhotonProbe {
-    int light = -1;   ///< in WorldImpl::lights(): one that no ray meets
-    Vec3 origin, dir; ///< dir: unit
-    float time = 0;   ///< as a fraction of the open shutter
-    Vec2 cone;        ///< EmissionDraw::cone
-    SampleNumbers numbers{Sampler(0, 0, 0), 0};
-    int bounces = 0;    ///< it ends as it leaves this many mirrors
-    bool power = false; ///< asks for ProbeEnd::light
-};
-
-/// How a probe leaves its last mirror.
-struct ProbeEnd {
-    bool arrives = false;
-    Vec3 origin, dir; ///< dir: unit
-    Color light{0};   ///< fraction that mirrors and air leave; with PhotonProbe::power times the light of its shader, as
-                      ///< intensity over pi for a light with a place, as irradiance over pi for a distant one
-    float keptDiffuse = 1, keptSpecular = 1; ///< with PhotonProbe::power: LightValue::kept()
-    float chance = 1;                        ///< probability of all random choices on the way; `light` does not contain it
-    uint64_t way = 0;                        ///< hash of the surfaces and lobes on the way
 };
 
 /// Photons in flight.

@@ -37,7 +37,7 @@ struct Counters {
     uint64_t guidedLight = 0; ///< sum of the luminance they brought, in units of kLightUnit: exact in any order
     static constexpr double kLightUnit = 0x1p-20;
     uint64_t searches = 0, searchesFound = 0, probes = 0; ///< of SpecularSearch
-    uint64_t records = 0, interpolated = 0; ///< irradiance records made, and lookups interpolated from them
+    uint64_t records = 0, interpolated = 0;               ///< irradiance records made, and lookups interpolated from them
     int depthMax = 0;
     size_t peakFrameBytes = 0;         ///< largest size of suspended kernel frames at one time, over all threads
     size_t threadBytes = 0;            ///< most memory of rays, points, columns and frames of one thread

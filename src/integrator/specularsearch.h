@@ -19,6 +19,7 @@ class SpecularSearch {
 public:
     /// seeds: must outlive the search.
     SpecularSearch(std::shared_ptr<const WorldImpl>, const CausticSeeds& seeds, Diagnostics&);
+    ~SpecularSearch();
     /// A point to which light is sought. Camera space.
     struct Query {
         Vec3 P;
@@ -40,24 +41,22 @@ public:
     /// Counts since the search was made.
     struct Counts {
         uint64_t searches = 0, found = 0, probes = 0;
-        uint64_t lost = 0; ///< paths that kMostTrials others did not find again; their light is too low
+        uint64_t mirrors = 0; ///< that these probes were to meet
+        uint64_t lost = 0;    ///< paths that kMostTrials others did not find again; their light is too low
     };
     const Counts& counts() const { return counts_; }
     const Counters& counters() { return pipeline_.counters(); }
 
 private:
-    struct State;
-    void begin(State&, const Query&);
-    void ask(State&, const Query&);
-    void take(State&) const;
-    void answer(State&, const Query&, Found&);
-    void takeStep(State&, const Query&, Found&);
-    void takeColumns(State&, const Query&, Found&);
-    void stepOn(State&, const Query&, Found&);
-    void takeLight(State&, const Query&, Found&);
-    void endTrial(State&, const Query&, bool arrived, Found&);
-    PhotonProbe probeAt(const State&, const Query&, const Vec3& start) const;
-    Vec3 moved(const State&, const Vec3& start, Vec2 by) const;
+    struct Trial;
+    Trial begin(const Query&, size_t query, uint32_t number);
+    bool walk(std::span<Trial>, std::span<const Query>, const StopFlag*);
+    bool send(const StopFlag*);
+    bool light(std::span<const Trial>, std::span<const Query>, std::span<Found>, const StopFlag*);
+    Found lightOf(const Trial&, const Vec3& P, const ProbeEnd*) const;
+    void roulette(std::span<const Query>, std::span<Found>) const;
+    bool repeat(std::span<const Trial>, std::span<const Query>, std::span<Found>, const StopFlag*);
+    PhotonProbe probeAt(const Trial&, const Query&, const Vec3& start) const;
     const EmissionPlan::Light* planned(int light) const;
     Vec3 directionOf(const EmissionPlan::Light&, const Query&);
 

@@ -7,8 +7,8 @@ constexpr size_t kSeedsSplit = 32; ///< a cell with more seeds is divided
 constexpr size_t kSeedsEnough = 4; ///< a cell with fewer uses the seeds of its parent
 } // namespace
 
-CausticSeeds::CausticSeeds(std::vector<CausticSeed> seeds, float brightness)
-    : perBrightness_(1 / brightness), seeds_(std::move(seeds)) {
+CausticSeeds::CausticSeeds(std::vector<CausticSeed> seeds, float brightness, float gain)
+    : perBrightness_(1 / brightness), gain_(gain), seeds_(std::move(seeds)) {
     std::vector<SurfaceTree::Point> points;
     double power = 0;
     for (const CausticSeed& s : seeds_) {

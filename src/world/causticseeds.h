@@ -34,8 +34,8 @@ public:
         uint32_t first = 0, count = 0; ///< in the order of seed()
         float irradiance = 0;          ///< luminance of their light, approximate
     };
-    /// brightness: mean luminance of the picture, > 0. At least one seed.
-    CausticSeeds(std::vector<CausticSeed>, float brightness);
+    /// brightness: mean luminance of the picture, > 0. gain: searches at a point that brings as much as that. At least one seed.
+    CausticSeeds(std::vector<CausticSeed>, float brightness, float gain);
     /// The cell at P for a side of a surface. Where none is, a cell of all seeds, with the irradiance that may have been missed.
     const Cell& find(const Vec3& P, int side) const {
         const int32_t i = tree_.find(P, side);
@@ -46,18 +46,18 @@ public:
     /// Seed i of a cell; i below its count.
     const CausticSeed& seed(const Cell& c, uint32_t i) const { return seeds_[order_[c.first + i]]; }
     /// Probability of a search at a point of a cell. brings: luminance that the eye receives from there under uniform light of
-    /// radiance 1. Points that bring as much as the picture's mean are searched each time; 0 only where `brings` is 0.
+    /// radiance 1. 0 only where `brings` is 0.
     float chanceOf(const Cell& c, float brings) const {
-        const float wanted = kGain * perBrightness_ * brings * c.irradiance;
+        const float wanted = gain_ * perBrightness_ * brings * c.irradiance;
         return brings > 0 ? std::clamp(wanted, &c == &anywhere_ ? kLeastAnywhere : kLeast, 1.f) : 0;
     }
     size_t cells() const { return cells_.size(); }
     size_t seeds() const { return seeds_.size(); }
 
 private:
-    static constexpr float kGain = 2, kLeast = 1.f / 64, kLeastAnywhere = 1.f / 1024;
+    static constexpr float kLeast = 1.f / 1024, kLeastAnywhere = 1.f / 4096;
     SurfaceTree tree_;
-    float perBrightness_;
+    float perBrightness_, gain_;
     std::vector<CausticSeed> seeds_;
     std::vector<uint32_t> order_; ///< indices of seeds, by cell; then all of them
     std::vector<Cell> cells_;

@@ -35,7 +35,7 @@ size_t seed(Scene& s, float brightness = .01f, uint32_t count = 20000) {
     EXPECT_TRUE(thread.emit(6, 0, count, count, found, nullptr));
     emission.addSeeds(found, 6, seeds, s.diagnostics);
     const size_t many = seeds.size();
-    if (many > 0) s.world->photons()->seeds = std::make_shared<const CausticSeeds>(std::move(seeds), brightness);
+    if (many > 0) s.world->photons()->seeds = std::make_shared<const CausticSeeds>(std::move(seeds), brightness, 2);
     return many;
 }
 
@@ -54,7 +54,7 @@ void seedWrongly(Scene& s, Vec3 low, Vec3 high) {
         for (Vec3& c : w.columns) c = Vec3(u(random) - .5f, u(random) - .5f, u(random) - .5f);
         wrong.push_back(w);
     }
-    s.world->photons()->seeds = std::make_shared<const CausticSeeds>(std::move(wrong), .01f);
+    s.world->photons()->seeds = std::make_shared<const CausticSeeds>(std::move(wrong), .01f, 2);
 }
 
 /// Differences of 5e-4 of what is met have errors below this share.
@@ -108,7 +108,8 @@ TEST(SpecularLights, ImageOfASunWithAnAngle) {
             path());
     EXPECT_GT(seed(s), 100u);
     const double dark = 4 * .05 * .05 / (2 * kPi * (1 - std::cos(.2))); // of the sun
-    expectLight(s.estimate(rayTo({.1f, 1.2f, 0}, {0, 2, 0}), samples(20000)), .5 * 3 * ((1 + std::cos(.2)) / 2 - dark), .05, "sun");
+    expectLight(s.estimate(rayTo({.1f, 1.2f, 0}, {0, 2, 0}), samples(20000)), .5 * 3 * ((1 + std::cos(.2)) / 2 - dark), .05,
+                "sun");
 }
 
 // Two mirrors: each has an image, and searches find either.
@@ -231,6 +232,16 @@ TEST(SpecularLights, LightsThatDiffuseLobesLeaveOut) {
     Scene s(inWorld("LightSource \"nodiffuse\" 1\n" + kMirrorBelow + kCeiling), path());
     EXPECT_GT(seed(s), 100u);
     EXPECT_EQ(s.estimate(kUp, 200).mean(), 0);
+}
+
+// A mirror that throws each ray somewhere else has no path that could be found again.
+TEST(SpecularLights, MirrorsByRandomNumbers) {
+    writeShader("shaking", "surface shaking() { vector r = reflect(normalize(I), normalize(N)); Oi = 1;"
+                           " Ci = trace(P, normalize(r + .2 * (vector random() - vector(.5, .5, .5)))); }\n");
+    Scene s(inWorld(kSpot + "AttributeBegin Surface \"shaking\" Polygon \"P\" [-2 0 -2  -2 0 2  2 0 2  2 0 -2] AttributeEnd\n" +
+                    kCeiling),
+            path());
+    EXPECT_EQ(seed(s), 0u);
 }
 
 // No search where no mirror is, nor for lamps that rays meet.

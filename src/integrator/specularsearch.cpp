@@ -10,10 +10,11 @@ namespace alpenglow::integrator {
 
 namespace {
 
-constexpr float kElsewhere = .125f;     ///< share of trials that begin anywhere: the seeds of a cell may lack a path to it
+constexpr float kElsewhere = .0625f;    ///< share of trials that begin anywhere: the seeds of a cell may lack a path to it
+constexpr float kAround = .125f;        ///< the same, that begin in the cell or its neighbours
 constexpr uint32_t kMostTrials = 2048;  ///< of a path that was found; if none finds it again, its light is too low
 constexpr uint32_t kMostTogether = 64;  ///< trials of a search that are made at once
-constexpr float kSurvives = 1;          ///< roulette of weak paths: chance over the root of their share of the light at the point
+constexpr float kSurvives = 3;          ///< roulette of weak paths: chance over the root of their share of the light at the point
 constexpr int kMostRounds = 24;         ///< of a trial
 constexpr float kArrived = .1f;         ///< a step below this share of CausticSeed::step ends a trial
 constexpr float kSame = 4;              ///< starts closer than this many of CausticSeed::step are of the same path
@@ -87,7 +88,7 @@ struct SpecularSearch::Trial {
     void stepOn();
 };
 
-SpecularSearch::SpecularSearch(std::shared_ptr<const WorldImpl> w, const CausticSeeds& seeds, Diagnostics& d)
+SpecularSearch::SpecularSearch(const std::shared_ptr<const WorldImpl>& w, const CausticSeeds& seeds, Diagnostics& d)
     : seeds_(seeds), pipeline_(w, d), plan_(pipeline_.stages().lightKernels, {.caustics = true, .learns = true, .unmet = true}),
       met_(plan_.met(true)), moves_(w->moves()) {
     job_.plan = &plan_;
@@ -119,7 +120,7 @@ Vec3 SpecularSearch::directionOf(const EmissionPlan::Light& l, const Query& q) {
 /// Trial `number` of a search.
 SpecularSearch::Trial SpecularSearch::begin(const Query& q, size_t query, uint32_t number) {
     const Vec2 u = Random(q.numbers).pair(q.vertex, kSpecularSeed, number);
-    const CausticSeeds::Cell& from = u.y < kElsewhere ? seeds_.anywhere() : *q.cell;
+    const CausticSeeds::Range& from = u.y < kElsewhere ? seeds_.anywhere() : u.y < kAround ? q.cell->around : q.cell->own;
     const CausticSeed& seed = seeds_.seed(from, std::min(uint32_t(u.x * float(from.count)), from.count - 1));
     Trial t;
     t.query = query;

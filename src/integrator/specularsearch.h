@@ -18,7 +18,7 @@ namespace alpenglow::integrator {
 class SpecularSearch {
 public:
     /// seeds: must outlive the search.
-    SpecularSearch(std::shared_ptr<const WorldImpl>, const CausticSeeds& seeds, Diagnostics&);
+    SpecularSearch(const std::shared_ptr<const WorldImpl>&, const CausticSeeds& seeds, Diagnostics&);
     ~SpecularSearch();
     /// A point to which light is sought. Camera space.
     struct Query {

@@ -29,10 +29,14 @@ struct CausticSeed {
 /// The seeds of a world by place. Immutable.
 class CausticSeeds {
 public:
+    /// Some seeds: in the order of seed().
+    struct Range {
+        uint32_t first = 0, count = 0;
+    };
     /// Seeds that came to rest near a point.
     struct Cell {
-        uint32_t first = 0, count = 0; ///< in the order of seed()
-        float irradiance = 0;          ///< luminance of their light, approximate
+        Range own, around;    ///< in its cube; in the cube that was divided into it and others
+        float irradiance = 0; ///< luminance of their light, approximate
     };
     /// brightness: mean luminance of the picture, > 0. gain: searches at a point that brings as much as that. At least one seed.
     CausticSeeds(std::vector<CausticSeed>, float brightness, float gain);
@@ -41,10 +45,10 @@ public:
         const int32_t i = tree_.find(P, side);
         return i < 0 ? anywhere_ : cells_[size_t(i)];
     }
-    /// The cell of all seeds.
-    const Cell& anywhere() const { return anywhere_; }
-    /// Seed i of a cell; i below its count.
-    const CausticSeed& seed(const Cell& c, uint32_t i) const { return seeds_[order_[c.first + i]]; }
+    /// All seeds.
+    const Range& anywhere() const { return anywhere_.own; }
+    /// Seed i of a range; i below its count.
+    const CausticSeed& seed(const Range& r, uint32_t i) const { return seeds_[order_[r.first + i]]; }
     /// Probability of a search at a point of a cell. brings: luminance that the eye receives from there under uniform light of
     /// radiance 1. 0 only where `brings` is 0.
     float chanceOf(const Cell& c, float brings) const {
@@ -55,11 +59,12 @@ public:
     size_t seeds() const { return seeds_.size(); }
 
 private:
-    static constexpr float kLeast = 1.f / 1024, kLeastAnywhere = 1.f / 4096;
+    static constexpr float kLeast = 1.f / 512, kLeastAnywhere = 1.f / 2048;
     SurfaceTree tree_;
     float perBrightness_, gain_;
     std::vector<CausticSeed> seeds_;
     std::vector<uint32_t> order_; ///< indices of seeds, by cell; then all of them
+    std::vector<Range> around_;   ///< of the cells that were divided
     std::vector<Cell> cells_;
     Cell anywhere_;
 };

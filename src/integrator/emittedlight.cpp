@@ -85,6 +85,10 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
             of.push_back(t);
             litBy_.push_back(store_.extraOf(r).lit);
         }
+            if (l.asksSurface && litBy_.back() >= 0) { // a light without area has the normal of the lit point
+                litSurfaces_.tellPoint(p, litBy_.back());
+                p.N = p.Ns;
+            }
         value.assign(q.size(), {});
         LitSurface lit;
         if (l.asksSurface) lit = litSurfaces_.querying(litBy_);
@@ -134,6 +138,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
         }
         const BoundLight& light = world_.lights()[size_t(met[first].light)];
         value.assign(q.size(), {});
+        for (size_t i = 0; light.asksSurface && i < q.size(); ++i) litSurfaces_.tellPoint(q[i], litBy_[i]);
         LitSurface lit;
         if (light.asksSurface) lit = litSurfaces_.querying(litBy_);
         std::vector<char> inMedium;

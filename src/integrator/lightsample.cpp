@@ -84,7 +84,7 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         s.shape = nullptr;
         s.visibility = ~0u;
         p.P = p.Ps + s.direction;
-        p.N = -s.direction;
+        p.N = p.Ns;
         p.Ci = Color(0);
         return true;
     }

@@ -79,6 +79,16 @@ void warnOfOwnPoint(const ShaderInstance& light, Diagnostics& d) {
                                             {}});
 }
 
+/// Whether a light that rays of lobes may meet depends on what it lights, besides Ps. Without area N is the lit point's.
+bool readsLitPoint(const BoundKernel& k, bool area) {
+    const auto& blocks = k.kernel->facts().blocks;
+    if (!area && std::find(blocks.begin(), blocks.end(), rsl::kBlockSky) == blocks.end()) return false;
+    const auto& inputs = k.kernel->inputs();
+    return std::any_of(inputs.begin(), inputs.end(), [&](const rsl::ir::Input& i) {
+        return i.name == "Ns" || i.name == "Ngs" || i.name == "I" || (!area && i.name == "N");
+    });
+}
+
 /// Sets the kind of a light by its statement.
 void setLightKind(BoundLight& part, const std::string& block, bool area, bool path, Diagnostics& d) {
     bool solar = block.starts_with(rsl::kBlockSolar);
@@ -222,6 +232,7 @@ void MutableWorld::bindLights(Diagnostics& d, const std::function<uint32_t(const
         std::vector<std::string> blocks = l.kernel.kernel->facts().blocks;
         if (blocks.empty()) blocks = {rsl::kBlockOutside};
         bool area = source.area && emitters.count(int(li));
+        if (path && readsLitPoint(l.kernel, area)) l.asksSurface = lightsAsk_ = true;
         if (area) {
             std::vector<uint32_t> seen;
             for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibility(*s));

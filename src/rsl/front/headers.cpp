@@ -89,3 +89,5 @@ bool dialectRispecSpecular(std::string_view dialect) { return lower(dialect) == 
 bool dialectLitPoint(std::string_view dialect) { return lower(dialect) == "pixie"; }
 
 } // namespace alpenglow::rsl::front
+float dialectShadowBias(std::string_view dialect) { return lower(dialect) == "aqsis" ? 0.f : .225f; }
+

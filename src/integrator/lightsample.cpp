@@ -82,7 +82,7 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         }
         mix();
         s.shape = nullptr;
-        s.visibility = ~0u;
+        s.visibility = light.shadowless && light.sky ? 0 : ~0u; // rays of lobes do not count it
         p.P = p.Ps + s.direction;
         p.N = p.Ns;
         p.Ci = Color(0);

@@ -49,6 +49,12 @@ bool givesMean(const scene::Light& source, const std::string& shader, bool path,
     return units != "radiance" && !path && !kRadiance.count(shader);
 }
 
+/// Whether a light says that nothing casts shadows of it, by the parameter of RIS.
+bool castsNone(const ShaderInstance& light) {
+    const auto i = light.parameters.numbers.find("enableShadows");
+    return i != light.parameters.numbers.end() && !i->second.empty() && i->second[0] == 0;
+}
+
 /// Reads Attribute "light" for a light with a kernel.
 void readLightAttributes(BoundLight& l, bool path, Diagnostics& d) {
     l.samples = std::clamp(
@@ -233,9 +239,10 @@ void MutableWorld::bindLights(Diagnostics& d, const std::function<uint32_t(const
         if (blocks.empty()) blocks = {rsl::kBlockOutside};
         bool area = source.area && emitters.count(int(li));
         if (path && readsLitPoint(l.kernel, area)) l.asksSurface = lightsAsk_ = true;
+        l.shadowless = path && castsNone(*l.instance);
         if (area) {
-            std::vector<uint32_t> seen;
-            for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibility(*s));
+            std::vector<uint32_t> seen; // by what rays, besides samples of the light
+            for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(l.shadowless ? 0 : visibility(*s));
             l.emitter = std::make_shared<Emitter>(emitters[int(li)], std::move(seen));
         }
         if (!area && readsOwnPoint(l.instance->program->shader())) warnOfOwnPoint(*l.instance, d);

@@ -163,7 +163,7 @@ void Connection::sendShadow(const Site& site, size_t point, size_t lane, const V
         s.distance = length(to) * (1 - 1e-5f);
     }
     // Not occluded; or the light's shader computed visibility itself.
-    if ((asInLoops && !of.shadows) || (says && says->ownShadow)) s.distance = 0;
+    if (of.shadowless || (asInLoops && !of.shadows) || (says && says->ownShadow)) s.distance = 0;
 }
 
 /// Sets the shadow rays of a call with a bias or a limit of distance, and removes samples out of its reach.

@@ -82,9 +82,9 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         }
         mix();
         s.shape = nullptr;
-        s.visibility = ~0u;
+        s.visibility = light.shadowless && light.sky ? 0 : ~0u; // rays of lobes do not count it
         p.P = p.Ps + s.direction;
-        p.N = -s.direction;
+        p.N = p.Ns;
         p.Ci = Color(0);
         return true;
     }

@@ -216,7 +216,7 @@ void LightSampling::takeParts(const BoundLight& light, const BatchContext& c) {
 bool LightSampling::needsPoints(const SurfaceBinding& b) const {
     const WorldImpl::LightList& list = world_.lightLists()[size_t(b.lightList)];
     const std::vector<int>& on = world_.sampledOf(list);
-    return !rules_.pickOne || paths_.automaton || choosesLights(list) ||
+    return !rules_.pickOne || paths_.automaton || world_.lightsAsk() || choosesLights(list) ||
            !std::all_of(on.begin(), on.end(), [&](int l) { return inRows_[size_t(l)] != 0; });
 }
 

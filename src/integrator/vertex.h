@@ -13,6 +13,7 @@ struct LitValues {
     std::vector<std::pair<const SiteInfo::Output*, std::vector<float>>> outputs; ///< missing ones have their parameter values
     std::shared_ptr<const struct KernelRun> displaced; ///< KernelRun::displaced of the surface; point: index there
     int point = -1;
+    Vec3 N, I; ///< of the lit point
     bool output(const std::string& name, std::vector<float>& v) const;
 };
 

@@ -200,7 +200,7 @@ public:
     void setErrorStyle(ErrorStyle style);
     /// Reports once per request that it is read but has no effect.
     void incapable(const Call& call, const std::string& what);
-    void sayDouble(const SourcePlace&); ///< warns once that "double" in declarations is read as float
+    void sayOtherType(const OtherType&, const SourcePlace&); ///< warns once a type that it is read as another
 
 private:
     struct Block {

@@ -194,7 +194,6 @@ bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at,
         const Vec3 w = directionOr(axis, directionOr(dot(p.N, p.I) > 0 ? -p.N : p.N, Vec3(0, 0, 1)));
         p.shape = nullptr;
         p.P = at + w;
-        p.N = -w;
     } else if (light.kind == LightKind::Environment) {
         // The sky in directions uniform in the cone of the loop; for a sky with a table, half of them by radiance.
         if (!p.ray) return false;
@@ -214,7 +213,6 @@ bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at,
         else if (!light.sky->sample(u, w, density) || (!all && !(dot(w, middle) > 1 - cap))) return false;
         p.shape = nullptr;
         p.P = at + w;
-        p.N = -w;
         *factor = 2 * cap / float(turns); // 1 / (pi pdf n)
         if (light.sky) *factor = 2 / (float(turns) * (1 / (2 * cap) + float(kPi) * light.sky->pdf(w)));
     } else {

@@ -1,4 +1,5 @@
 // Resolves the call sites of a kernel, once per kernel.
+#include "rsl/front/headers.h"
 #include "scene/scene.h"
 #include "shadeops/distributions.h"
 #include "shadeops/specular.h"
@@ -129,8 +130,8 @@ std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl:
     return o;
 }
 
-/// Parameters of shadow() beyond texture(): from the call, else from Option "shadow".
-void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options) {
+/// Parameters of shadow() beyond texture(): from the call, else from Option "shadow"; usual: the bias where both set none.
+void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options, float usual) {
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
         return f == i.named.end() ? -1 : f->second;
@@ -147,7 +148,7 @@ void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options
         return f == options.values.end() || f->second.numbers.empty() ? otherwise : f->second.numbers[0];
     };
     t.shadowSamples = number("shadow:sample", 16);
-    const float bias = number("shadow:bias", .225f);
+    const float bias = number("shadow:bias", usual);
     t.shadowBias0 = number("shadow:bias0", bias);
     t.shadowBias1 = std::max(t.shadowBias0, number("shadow:bias1", std::max(bias, t.shadowBias0)));
 }
@@ -231,7 +232,7 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
     t->firsts = t->count * (i.kind == SiteKind::Texture ? 2 : 3);
     if (i.kind == SiteKind::Shadow) {
         t->slopes = 0;
-        shadowSite(*t, i, options);
+        shadowSite(*t, i, options, rsl::front::dialectShadowBias(world.settings().dialect));
     }
     t->rows.assign(i.rows.begin() + (t->computed && !i.rows.empty()), i.rows.end());
     return t;

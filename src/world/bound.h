@@ -66,7 +66,8 @@ struct BoundLight {
     /// density of a photon. Null: other lights.
     BoundKernel photons;
     int photonOutputs[4] = {};
-    bool shadows = false; ///< other hiders: its light casts traced shadows (Attribute "light" "shadows" "on")
+    bool shadowless = false; ///< path: nothing casts shadows of its samples, and rays of lobes that sample it do not count it
+    bool shadows = false;    ///< other hiders: its light casts traced shadows (Attribute "light" "shadows" "on")
     /// Kernels for strings that surfaces send: by SiteInfo::sentKey of the loop.
     std::map<std::string, BoundKernel> variants;
     int nonDiffuse = -1, nonSpecular = -1;     ///< outputs, or -1

@@ -3,7 +3,9 @@
 #include "ri/interpreter.h"
 #include <algorithm>
 #include <fmt/format.h>
+#include <iterator>
 #include <map>
+#include <string_view>
 
 namespace alpenglow::ri {
 namespace {
@@ -35,17 +37,47 @@ scene::Primitive boxOf(const std::vector<float>& b) {
     return p;
 }
 
+constexpr std::string_view kPlugIn = "blobbydso:", kGrids = "blobbydso:impl_openvdb";
+
+scene::Param constant(const char* name, scene::Type type, const SourcePlace& place) {
+    scene::Param p;
+    p.name = name;
+    p.cls = Class::Constant;
+    p.type = type;
+    p.place = place;
+    return p;
+}
+
+/// What shaders/ris/PxrVolumeGrid.sl, or a shader of the scene's own, needs to know of a file of grids: constants of the region.
+/// Nothing if no file is named.
+scene::ParamList gridOf(const scene::ParamList& given, const std::vector<float>& bound, const scene::ShaderCall* interior,
+                        const SourcePlace& place) {
+    const scene::Param* const texts = scene::find(given, "blobbydso:stringargs");
+    if (!texts || texts->strings.empty() || texts->strings[0].empty()) return {};
+    scene::Param file = constant("gridFile", scene::Type::String, place), name = constant("gridName", scene::Type::String, place);
+    file.strings = {texts->strings[0]};
+    name.strings = {texts->strings.size() > 1 && !texts->strings[1].empty() ? texts->strings[1] : "density"};
+    if (interior) // the shader may want another grid than the one that the plug-in takes for the whole
+        if (const scene::Param* p = scene::find(interior->params, "densityFloatPrimVar"); p && !p->strings.empty())
+            if (!p->strings[0].empty()) name.strings = p->strings;
+    scene::Param box = constant("gridBound", scene::Type::Float, place);
+    box.arrayLength = 6;
+    box.numbers = bound;
+    return {std::move(file), std::move(name), std::move(box)};
+}
+
 } // namespace
 
 /// False when the arguments make no region: reported.
 bool Interpreter::regionOf(const Call& c, std::vector<float>& bound) {
     const std::string& type = c.text(0);
-    if (type.starts_with("blobbydso:")) {
+    if (type.starts_with(kPlugIn) && type != kGrids) {
         reporter.error(Rie::Incapable, c.place,
-                       "Volume: plug-ins of volumes (blobbydso) are those of another renderer; it is left out");
+                       "Volume: plug-ins of volumes (blobbydso) are those of another renderer; it is left out",
+                       "\"blobbydso:impl_openvdb\" reads grids of OpenVDB");
         return false;
     }
-    if (!shapes().count(type)) {
+    if (type != kGrids && !shapes().count(type)) {
         reporter.error(Rie::BadToken, c.place, fmt::format("Volume: \"{}\" is not known", type),
                        "box, ellipsoid, cylinder or cone");
         return false;
@@ -66,7 +98,7 @@ bool Interpreter::regionOf(const Call& c, std::vector<float>& bound) {
 void Interpreter::volume(const Call& c) {
     std::vector<float> b;
     if (!regionOf(c, b)) return;
-    const bool box = c.text(0) == "box";
+    const bool grids = c.text(0) == kGrids, box = grids || c.text(0) == "box";
     if (!box && gatheringMotion()) {
         reporter.error(Rie::BadMotion, c.place, fmt::format("Volume \"{}\" moves by its transformation only", c.text(0)),
                        "MotionBegin of transformations before it; boxes move by their bounds, too");
@@ -77,7 +109,7 @@ void Interpreter::volume(const Call& c) {
         if (p.cls == Class::Constant || p.cls == Class::Uniform || !p.declared) {
             p.cls = Class::Constant;
             everywhere.push_back(std::move(p));
-        } else {
+        } else if (!grids || !p.numbers.empty()) { // empty ones name grids
             incapable(c, "variables of the voxels of a Volume are left out: its shader has the numbers of the whole region, and "
                          "its own function of P");
         }
@@ -85,6 +117,20 @@ void Interpreter::volume(const Call& c) {
     if (!begin(BlockKind::Attribute, c)) return;
     scene::Attributes& a = attributes();
     if (!a.interior) a.interior = std::move(a.atmosphere), a.atmosphere = nullptr; // Atmosphere is "interior" in later renderers
+    if (grids) {
+        scene::ParamList grid = gridOf(everywhere, b, a.interior.get(), c.place);
+        if (grid.empty())
+            reporter.error(Rie::MissingData, c.place, "Volume \"blobbydso:impl_openvdb\" names no file; it is empty",
+                           "\"constant string[2] blobbydso:stringargs\" [\"smoke.vdb\" \"density\"]");
+        std::erase_if(everywhere, [](const scene::Param& p) { return p.name.starts_with(kPlugIn); });
+        everywhere.insert(everywhere.end(), std::make_move_iterator(grid.begin()), std::make_move_iterator(grid.end()));
+        if (a.interior && a.interior->name == "PxrVolume") {
+            auto marched = std::make_shared<scene::ShaderCall>(*a.interior);
+            marched->name = "PxrVolumeGrid";
+            marched->toWorld = state.ctm; // the grid lies in the space of the region
+            a.interior = std::move(marched);
+        }
+    }
     if (!a.interior)
         reporter.once("ri:emptyvolume", Severity::Warning, Rie::Incapable, c.place,
                       "a Volume without Interior or Atmosphere is empty",

@@ -86,7 +86,7 @@ void answerMessage(Services& answers, const ServiceCall& q) {
     const KernelRun& c = q.c;
     q.each([&](int lane, const ShadePoint& p) {
         const SurfaceBinding* b = q.binding(answers.world(), lane);
-        if (c.lit && who == Asks::Surface)
+        if (who == Asks::Surface && (c.lit || !b)) // a light; one of a sky's table lights nothing
             if (const auto& acts = filterActs(answers, q.nameId(lane), b)) return q.answer(lane, *acts);
         if (!b) return;
         const InstanceRef& shader = shaderOf(*b, who, p);

@@ -1,4 +1,5 @@
 #include "world/shadervalue.h"
+#include "shading/faceindex.h"
 #include <cstdlib>
 
 namespace alpenglow::world {
@@ -68,8 +69,12 @@ std::optional<ShaderValue> primitiveVariable(const geometry::Shape& shape, const
     if (name == "N") return triple(at.N, true);
     if (name == "Cs") return triple({a.color.x, a.color.y, a.color.z}, false);
     if (name == "Os") return triple({a.opacity.x, a.opacity.y, a.opacity.z}, false);
-    if (name != "s" && name != "t" && name != "st") return std::nullopt;
     t.kind = Kind::Float;
+    if (name == shading::kFaceIndex) {
+        t.numbers = {float(at.face)};
+        return t;
+    }
+    if (name != "s" && name != "t" && name != "st") return std::nullopt;
     t.varying = true;
     t.elements = name == "st" ? 2 : 0;
     if (name != "t") t.numbers.push_back(at.s);

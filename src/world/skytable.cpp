@@ -1,5 +1,6 @@
 #include "world/skytable.h"
 #include "base/exact.h"
+#include "scene/filterlink.h"
 #include "world/emitterfootprint.h"
 #include "world/mutableworld.h"
 #include "world/skysampler.h"
@@ -270,12 +271,27 @@ int widestMap(const BoundKernel& k, const WorldImpl& world) {
     return widest;
 }
 
+/// Whether a light that asks the surface which it lights only asks which light filters act: they scale light that is known
+/// without it. In a table filters with groups act on nothing, so that it has all the light.
+bool asksFiltersOnly(const BoundLight& l) {
+    const auto isLink = [](const std::string& text) { return scene::FilterLink::of(text).has_value(); };
+    const auto& texts = l.instance->parameters.strings;
+    const bool linked = std::any_of(texts.begin(), texts.end(), [&](const auto& t) { return isLink(t.second); });
+    return std::all_of(l.kernel.sites.begin(), l.kernel.sites.end(), [&](const SiteInfo& s) {
+        if (s.kind == SiteKind::LightHandles || (s.photons && s.photons->caustic)) return false;
+        if (s.kind != SiteKind::Message) return true;
+        const std::string name = s.site->strings.empty() ? "" : s.site->strings[0]; // "": known when the shader runs
+        return name.empty() ? linked : isLink(name);
+    });
+}
+
 } // namespace
 
 void MutableWorld::tabulateSkies(Evaluator& evaluator) {
     for (const int i : skies_) {
         BoundLight& l = lights_[size_t(i)];
-        if (l.kind != LightKind::Environment || !l.importance || l.asksSurface || l.sentCl >= 0) continue;
+        if (l.kind != LightKind::Environment || !l.importance || l.sentCl >= 0) continue;
+        if (l.asksSurface && !asksFiltersOnly(l)) continue;
         if (l.kernel.kernel->facts().suspends) continue;
         const bool sampled = settings_.direct && settings_.indirect && !settings_.bsdfOnly && !settings_.lightOnly;
         l.guidable = sampled && !l.channels && !usesFootprint(l);

@@ -292,6 +292,27 @@ TEST(RisLinks, FiltersActOnWhatSubscribesToTheirGroups) {
         }
 }
 
+// A sun in a map, 1/2000 of all directions, is sampled whatever filters the sky has: lobes alone would leave an error of 40 %.
+TEST(RisLinks, SkiesWithLinkedFiltersAreSampledByTheirMaps) {
+    const std::string map = writeMap("rissun.exr", 128, 64, [](int x, int y, int) {
+        return (y == 50 || y == 51) && (x == 40 || x == 41) ? 4000.f : .01f; // about the direction toward which the square looks
+    });
+    const std::string dome = "Light \"PxrDomeLight\" \"l\" \"string lightColorMap\" " + map;
+    const std::string filters =
+        "LightFilter \"PxrIntMultLightFilter\" \"f\" \"float intensity\" .5\nLightFilter \"PxrIntMultLightFilter\" \"g\" \"float "
+        "intensity\" .2 \"string linkingGroups\" \"b\"\nLightFilter \"PxrIntMultLightFilter\" \"h\" \"float intensity\" 0 "
+        "\"string linkingGroups\" \"c\"\n";
+    const Moments plain = half(block(dome), "", .5, Hider::Path);
+    const auto with = [&](const std::string& subset) {
+        return half(block(filters + dome), "Attribute \"lightfilter\" \"string subset\" \"" + subset + "\"\n", -.5, Hider::Path);
+    };
+    for (const auto& [subset, part] : {std::pair{"a", .5}, {"b", .1}, {"c", 0.}}) {
+        const Moments m = with(subset);
+        EXPECT_NEAR(m.mean() / plain.mean(), part, .01 * part) << subset;
+        EXPECT_LE(m.se(), .005 * part * plain.mean()) << subset;
+    }
+}
+
 TEST(RisLinks, SubsetsChooseLightsAndMutedOnesAreOff) {
     const std::string two =
         block("Attribute \"grouping\" \"string membership\" \"key\"\nLight \"PxrDomeLight\" \"a\" \"float intensity\" .5") +

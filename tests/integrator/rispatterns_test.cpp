@@ -1,44 +1,15 @@
 // Patterns of RIS one by one: values of the formulas that their manuals give (docs/ris.md).
 #include "integrator/harness.h"
-#include "integrator/maps.h"
+#include "integrator/rispattern.h"
 
 namespace rispatterns_test {
 
 using namespace alpenglow;
 using namespace alpenglow::integrator;
 using namespace alpenglow::integrator::testing;
+using namespace alpenglow::integrator::testing::ris;
 
 namespace {
-
-constexpr float kX = .25f, kY = .5f; // where the square is seen, from the origin
-
-/// What a node of a network gives at (kX, kY, 2) of a square that is 2 across, whose s is (x + 1) / 2 and t (1 - y) / 2. before:
-/// attributes and patterns that stand before it. type: of the output, float, color or vector.
-Color given(const std::string& node, const std::string& output, const std::string& type, const std::string& before = "",
-            const std::string& primitive = "") {
-    writeShader("showsfloat", "surface showsfloat(varying float x = -7;) { Oi = 1; Ci = color(x, x, x); }\n");
-    writeShader("showscolor", "surface showscolor(varying color x = -7;) { Oi = 1; Ci = x; }\n");
-    writeShader("showsvector",
-                "surface showsvector(varying vector x = -7;) { Oi = 1; Ci = color(xcomp(x), ycomp(x), zcomp(x)); }\n");
-    Settings set;
-    set.hider = Hider::Path;
-    const std::string name = node.substr(0, node.find(' '));
-    const std::string rest = node.substr(name.size());
-    Scene s("WorldBegin\n" + before + "Pattern \"" + name + "\" \"n\"" + rest + "\nBxdf \"shows" + type +
-                "\" \"b\" \"reference " + type + " x\" [\"n:" + output + "\"]\n" +
-                (primitive.empty() ? "Polygon \"P\" [-1 1 2  1 1 2  1 -1 2  -1 -1 2] \"st\" [0 0  1 0  1 1  0 1]\n" : primitive) +
-                "WorldEnd\n",
-            set);
-    return s.one(rayTo({0, 0, 0}, {kX, kY, 2}));
-}
-float number(const std::string& node, const std::string& output = "resultF", const std::string& before = "") {
-    return given(node, output, "float", before).x;
-}
-void expectColor(const Color& c, double r, double g, double b, double tolerance, const std::string& what) {
-    EXPECT_NEAR(c.x, r, tolerance) << what;
-    EXPECT_NEAR(c.y, g, tolerance) << what;
-    EXPECT_NEAR(c.z, b, tolerance) << what;
-}
 
 TEST(RisPatterns, TeeHandsOnAndSidesAreTold) {
     expectColor(given("PxrTee \"color inputRGB\" [.1 .2 .3] \"string aov\" \"\"", "resultRGB", "color"), .1, .2, .3, 1e-6, "tee");
@@ -149,10 +120,6 @@ TEST(RisPatterns, AThinFilmInterferes) {
                 channel[0], .5 * channel[1], 2 * channel[2], 2e-5, "film");
     expectColor(given("PxrThinFilm \"float thickness\" 0", "resultRGB", "color"), 0, 0, 0, 1e-6,
                 "a film of no thickness is black");
-}
-
-std::string flatMap(const char* name, float r, float g, float b) {
-    return writeMap(name, 4, 4, [=](int, int, int c) { return c == 0 ? r : c == 1 ? g : b; });
 }
 
 TEST(RisPatterns, PicturesOfARoundCube) {

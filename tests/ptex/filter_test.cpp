@@ -295,6 +295,17 @@ class PtexScenes : public cli::testing::CommandFolder {
 protected:
     const std::string indices = "[4 4 4 4 4 4] [0 2 3 1 4 5 7 6 0 1 5 4 2 6 7 3 0 4 6 2 1 3 7 5]";
     const std::string points = "\"P\" [-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1]";
+    /// The largest difference of colours where the second picture is covered; nothing if that is hardly anywhere.
+    static double worstOf(const std::vector<float>& got, const std::vector<float>& want) {
+        double worst = 0, covered = 0;
+        EXPECT_EQ(got.size(), want.size());
+        for (size_t i = 0; i < std::min(got.size(), want.size()); i += 4)
+            if (want[i + 3] > .99f)
+                for (size_t k = 0; k < 3; ++k)
+                    worst = std::max(worst, std::fabs(double(got[i + k]) - double(want[i + k]))), ++covered;
+        EXPECT_GT(covered, 600);
+        return worst;
+    }
     std::vector<float> picture(const std::string& geometry) {
         write("s.rib", "Format 48 48 1\nPixelSamples 1 1\nPixelFilter \"box\" 1 1\nHider \"hidden\" \"jitter\" [0]\nDisplay "
                        "\"a.exr\" \"openexr\" \"rgba\"\nProjection \"perspective\" \"fov\" 30\n"
@@ -328,16 +339,41 @@ TEST_F(PtexScenes, AColouredCube) {
                                     ints + "] [" + floats + "] " + points + "\n";
     for (const std::string& mesh : {polygons, subdivision}) {
         const auto tex = picture("Surface \"tex\"\n" + mesh), want = picture("Surface \"want\"\n" + mesh);
-        ASSERT_EQ(tex.size(), want.size());
-        double worst = 0, covered = 0;
-        for (size_t i = 0; i < tex.size(); i += 4)
-            if (want[i + 3] > .99f)
-                for (size_t k = 0; k < 3; ++k)
-                    worst = std::max(worst, std::fabs(double(tex[i + k]) - double(want[i + k]))), ++covered;
-        EXPECT_GT(covered, 600);
         // Colours of the faces beside bend at the edges, over a filter of about a pixel of 1/16.
-        EXPECT_LT(worst, .06) << mesh.substr(0, 20);
+        EXPECT_LT(worstOf(tex, want), .06) << mesh.substr(0, 20);
     }
+}
+
+// The pattern of RIS shows the same, by each of its filters, and the face that is so many farther on.
+TEST_F(PtexScenes, APatternOfRis) {
+    write("cube.ply", cubePly());
+    run("maketx -ptex -side 16 cube.ply cube.ptx", "2>&1");
+    ASSERT_EQ(status, 0);
+    write("shows.sl",
+          "surface shows(varying color x = 0; varying float r = 0, a = 0;) { Oi = 1; Ci = (r == comp(x, 0) && a == 1) "
+          "? x : 9; }\n");
+    write("want.sl", "surface want() { Oi = 1; point p = transform(\"object\", P); Ci = color(xcomp(p) + 1, ycomp(p) + 1, "
+                     "zcomp(p) + 1) / 2; }\n");
+    const std::string mesh = "PointsPolygons " + indices + " " + points + "\n";
+    const auto shown = [&](const std::string& parameters, const std::string& of) {
+        return picture("Pattern \"PxrPtexture\" \"p\" " + parameters +
+                       "\nBxdf \"shows\" \"s\" \"reference color x\" [\"p:resultRGB\"] \"reference float r\" [\"p:resultR\"] "
+                       "\"reference float a\" [\"p:resultA\"]\n" +
+                       of);
+    };
+    for (const char* filter : {"0", "1", "6"})
+        EXPECT_LT(worstOf(shown(std::string("\"string filename\" \"cube.ptx\" \"int filter\" ") + filter, mesh),
+                          picture("Surface \"want\"\n" + mesh)),
+                  .06)
+            << filter;
+    // Face 1 is z = 1, with corners that run (-, -) (+, -) (+, +) (-, +); so do those of this mesh of one face.
+    const std::string one = "PointsPolygons [4] [4 5 7 6] " + points + "\n";
+    EXPECT_LT(
+        worstOf(shown("\"string filename\" \"cube.ptx\" \"int faceIndexOffset\" 1", one), picture("Surface \"want\"\n" + one)),
+        .06);
+    const auto none = shown("\"color missingColor\" [.25 .5 1]", one);
+    for (size_t i = 0; i < none.size(); i += 4)
+        if (none[i + 3] > .99f) EXPECT_EQ(Vec3(none[i], none[i + 1], none[i + 2]), Vec3(.25f, .5f, 1));
 }
 
 TEST_F(PtexScenes, WhatCannotBe) {

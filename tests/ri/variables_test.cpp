@@ -278,6 +278,29 @@ TEST(Volumes, AreClosedShapesWithTheShaderInside) {
     EXPECT_EQ(scene::find(c->primitive().motionKeys[0]->params, "P")->numbers[14], 3);
 }
 
+TEST(Volumes, GridsAreBoxesThatTellTheirShaders) {
+    const std::string volume = "Volume \"blobbydso:impl_openvdb\" [-1 2 -3 4 -5 6] [0 0 0] \"constant string[2] "
+                               "blobbydso:stringargs\" [\"a.vdb\" \"smoke\"] \"varying float smoke\" []";
+    auto c = inWorld("Bxdf \"PxrVolume\" \"v\" Translate 0 0 1 " + volume);
+    EXPECT_EQ(c->messages(), "");
+    ASSERT_EQ(c->frame().primitives.size(), 1u);
+    const scene::Primitive& box = c->primitive(0);
+    EXPECT_EQ(box.attributes->interior->name, "PxrVolumeGrid");
+    expectMatrix(box.attributes->interior->toWorld.first(), {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 1, 1});
+    EXPECT_EQ(scene::find(box.params, "gridFile")->strings[0], "a.vdb");
+    EXPECT_EQ(scene::find(box.params, "gridName")->strings[0], "smoke");
+    EXPECT_EQ(scene::find(box.params, "gridBound")->numbers, (std::vector<float>{-1, 2, -3, 4, -5, 6}));
+    EXPECT_EQ(scene::find(box.params, "blobbydso:stringargs"), nullptr);
+    // A grid that the shader names comes first; another shader keeps its name.
+    c = inWorld("Bxdf \"PxrVolume\" \"v\" \"string densityFloatPrimVar\" \"fog\" " + volume);
+    EXPECT_EQ(scene::find(c->primitive(0).params, "gridName")->strings[0], "fog");
+    c = inWorld("Interior \"haze\" " + volume);
+    EXPECT_EQ(c->primitive(0).attributes->interior->name, "haze");
+    // Without a file: said, and nothing is read.
+    c = inWorld("Interior \"haze\" Volume \"blobbydso:impl_openvdb\" [-1 1 -1 1 -1 1] [0 0 0]");
+    EXPECT_EQ(c->only().code, Rie::MissingData);
+}
+
 TEST(Volumes, ThatAreNoneAreErrors) {
     for (const char* text :
          {"Volume \"blob\" [-1 1 -1 1 -1 1] [0 0 0]", "Volume \"box\" [1 -1 -1 1 -1 1] [0 0 0]",

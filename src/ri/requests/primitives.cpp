@@ -206,7 +206,7 @@ std::vector<Request> primitiveRequests() {
         {"Volume", "string type; number[6] bound; int[] dimensions; ..", k, s, true,
          "A region that the Interior, or without one the Atmosphere, fills: \"box\", \"ellipsoid\", or along z \"cylinder\" and "
          "\"cone\", as large "
-         "as its bound. Constant variables are parameters of the shader.",
+         "as its bound. Constant variables are parameters of the shader. \"blobbydso:impl_openvdb\": a grid of OpenVDB in a box.",
          "\"box\" [-1 1 -1 1 -1 1] [0 0 0]", [](Interpreter& in, const Call& c) { in.volume(c); }},
         {"Procedural", "string kind; string[] arguments; number[6] bound; ..", k, s, false,
          "Content from an archive (\"DelayedReadArchive\"), or with --allow-exec from a program (\"RunProgram\") or a "

@@ -17,15 +17,15 @@ using geometry::ShapeRef;
 
 /// The nearest candidate so far, in units of the ray's direction.
 struct Best {
-    double t;
-    uint32_t shape, prim;
-    double b1, b2;
+    double t;             ///< distance in lengths of Ray::dir
+    uint32_t shape, prim; ///< indices of the shape, and of the primitive in it
+    double b1, b2;        ///< as Hit::b1 and b2
 };
 
 /// A ray under way, and what it has found.
 struct Query {
     const Ray* ray;
-    Best best;
+    Best best;                      ///< nearest hit so far
     bool any;                       // occlusion
     const StopFlag* stop = nullptr; ///< ends long searches in solids; may be null
 };
@@ -67,10 +67,10 @@ inline bool usable(const Ray& r) { return bool(int(r.tnear < r.tfar) & int(usabl
 /// The shapes, their tree or their list, and the tests of candidates.
 struct Accel::Impl {
     std::vector<ShapeRef> shapes;
-    std::vector<uint32_t> visibility;
-    std::vector<Levels> levels; ///< empty: all are visible
-    geometry::Bounds bounds;
-    bool sound = true;
+    std::vector<uint32_t> visibility; ///< a mask for each shape; empty: kAll
+    std::vector<Levels> levels;       ///< empty: all are visible
+    geometry::Bounds bounds;          ///< of all shapes, camera space
+    bool sound = true;                ///< Accel::sound()
     Bvh tree;
     std::unique_ptr<Solids> solids; ///< null: there are none
     /// Whether the shape is a part of a solid.
@@ -86,9 +86,9 @@ struct Accel::Impl {
 
     /// Scenes of few primitives have no tree.
     struct Ball {
-        uint32_t shape;
-        Vec3d centre;
-        double radius2;
+        uint32_t shape; ///< index in shapes
+        Vec3d centre;   ///< camera space
+        double radius2; ///< squared radius
     }; ///< an exact shape and its bounding sphere
     bool direct = false;
     DirectTriangles triangles;
@@ -211,8 +211,8 @@ struct Accel::Impl {
 
     /// A geometry in its own space, for all its instances.
     struct Geometry {
-        ShapeRef shape;
-        Bvh tree; ///< empty: one exact primitive
+        ShapeRef shape; ///< in its own space
+        Bvh tree;       ///< empty: one exact primitive
     };
     std::vector<std::unique_ptr<Geometry>> geometries;
     std::vector<uint32_t> geometryOf; ///< by shape: index in geometries, or kNone; empty: no instances
@@ -223,10 +223,10 @@ struct Accel::Impl {
     struct alignas(128) Place {
         geometry::Affine in; ///< to the geometry's space, if it does not move
         const Geometry* geometry;
-        const geometry::Placed* placed;
+        const geometry::Placed* placed;       ///< the instance
         const geometry::Deforming* deforming; ///< or null
-        uint32_t shape;
-        bool moves;
+        uint32_t shape;                       ///< index in shapes
+        bool moves;                           ///< its place changes during the shutter
     };
     std::vector<Place> places; ///< Bvh::Exact::shape of a part is an index in it
     bool placesMove = false;   ///< some of them move or deform
@@ -242,14 +242,15 @@ struct Accel::Impl {
     /// A ray in the space of an instanced geometry.
     struct Inside {
         const Geometry* geometry;
-        const geometry::Placed* place;
-        uint32_t shape;
-        Vec3d org, dir;
+        const geometry::Placed* place; ///< the instance
+        uint32_t shape;                ///< index in shapes of the instance
+        Vec3d org, dir;                ///< in the space of the geometry; t is that of the ray in camera space
     };
     /// An instanced geometry without a tree; others are traversed (bvh_walk.inc).
     bool intersectPlaced(Query&, uint32_t s) const;
     bool intersectInside(Query&, const Inside&, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
     bool intersectInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
+    /// sameCrossing() for corners in the space of the geometry.
     bool sameCrossing(const Query&, const Inside&, double t, const Vec3d corner[3]) const;
 
     /// One ray, by tree or list.

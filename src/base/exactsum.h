@@ -6,6 +6,7 @@
 
 namespace alpenglow {
 
+/// 128-bit integers, a compiler extension.
 using Int128 = __int128;
 using UInt128 = unsigned __int128;
 

@@ -87,7 +87,7 @@ std::vector<std::string> splitSearchPath(const std::string& path, const std::vec
 
 /// Result of a lookup, and how it differs from the name.
 struct FoundFile {
-    std::string path;
+    std::string path;          ///< where the file is
     bool otherCase = false;    ///< letters differ from the name on disk
     bool baseNameOnly = false; ///< the folders of the name were ignored
 };

@@ -18,12 +18,13 @@
 
 namespace alpenglow {
 
-inline constexpr uint32_t kReplicas = 2;
+inline constexpr uint32_t kReplicas = 2; ///< independent sequences of a pixel (above)
 
 /// A seed, hashed once for all pixels.
 struct SeedKey {
+    /// Seed: any number.
     explicit SeedKey(uint64_t seed) : key(mix64(seed + 0x6a09e667f3bcc909ull)) {}
-    uint64_t key;
+    uint64_t key; ///< the hashed seed
 };
 
 class SampleNumbers;
@@ -55,6 +56,7 @@ private:
 /// The numbers of one sample of a pixel: equal to Sampler's for that sampleIndex, with common parts computed once.
 class SampleNumbers {
 public:
+    /// Of that sample of the pixel.
     SampleNumbers(const Sampler& s, uint32_t sampleIndex) : index_(sampleIndex / kReplicas) {
         const uint64_t key = mix64(s.seed_ ^ (s.pixel_ | sampleIndex % kReplicas));
         low_ = uint32_t(key);

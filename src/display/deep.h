@@ -24,8 +24,8 @@ struct DeepSamples {
 
 /// A step of one staircase among several.
 struct DeepChange {
-    float z;
-    float before[3], after[3];
+    float z;                   ///< depth of the step, camera space
+    float before[3], after[3]; ///< transmittance by channel, in front of the step and behind it
 };
 /// Appends the mean of `count` staircases, given by all their steps in any order, as one staircase that deviates from it by at
 /// most `tolerance` (>= 0), and ends at its final value. Sorts `all`.

@@ -11,8 +11,10 @@ namespace alpenglow::models {
 /// 1: float, integer, boolean; 2: vector2; 3: color3, vector3; 4: color4, vector4.
 using MtlxValue = std::vector<std::string>;
 
+/// Translates the nodes of one file, each once.
 class MtlxGraph {
 public:
+    /// Root: the element materialx. file: for messages. All must outlive the graph.
     MtlxGraph(const XmlElement& root, const std::string& file, const MaterialxMaps& maps, Diagnostics& d)
         : root_(root), file_(file), maps_(maps), diags_(d) {}
 
@@ -65,8 +67,8 @@ MtlxValue mtlxFit(MtlxValue, size_t width);
 std::string mtlxNumber(double);
 /// What nodes see of the graph while one of them is made.
 struct MtlxNodes {
-    MtlxGraph& g;
-    const XmlElement& n;
+    MtlxGraph& g;            ///< the graph that is translated
+    const XmlElement& n;     ///< the node
     const XmlElement* graph; ///< the nodegraph that it is in, or null
     std::string output;      ///< which of its outputs
     /// The value of the node; nothing: its kind is not known.

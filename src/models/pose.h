@@ -6,7 +6,7 @@ namespace alpenglow::models {
 
 /// Places of all nodes, in the space of the scene, and the weights of their morph targets.
 struct Pose {
-    std::vector<Matrix> world;
+    std::vector<Matrix> world;                ///< by node: to the space of the scene
     std::vector<std::vector<double>> weights; ///< by node; none: those of the mesh
 };
 

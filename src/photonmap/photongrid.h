@@ -8,6 +8,7 @@
 
 namespace alpenglow::photonmap {
 
+/// Photons in the cells of a grid, for a progressive pass whose radii are known before.
 class PhotonGrid {
 public:
     PhotonGrid() = default;

@@ -17,9 +17,11 @@ struct OutputPolicy;
 
 namespace alpenglow::pointcloud {
 
+/// The points of one file of bake().
 struct Baked {
-    ChannelType type = ChannelType::Float;
-    std::vector<float> rows; ///< s, t, then sizeOf(type) numbers, by point
+    ChannelType type = ChannelType::Float; ///< of the value
+    std::vector<float> rows;               ///< s, t, then sizeOf(type) numbers, by point
+    /// Number of points.
     size_t size() const { return rows.size() / (2 + size_t(sizeOf(type))); }
 };
 
@@ -35,9 +37,9 @@ std::optional<Baked> loadBaked(const std::string& path, Diagnostics&, const Sour
 /// is the value of the plane that best fits the points within two pixels of its centre (weights (1 - d^2 / 4)^2), so linear
 /// functions of s and t are preserved. Gaps are filled from coarser pictures.
 struct BakedPicture {
-    int side = 0, channels = 0;
-    std::vector<float> pixels; ///< row by row
-    size_t outside = 0;        ///< points that are left out
+    int side = 0, channels = 0; ///< pixels of a side; numbers of a pixel
+    std::vector<float> pixels;  ///< row by row
+    size_t outside = 0;         ///< points that are left out
 };
 BakedPicture pictureOf(const Baked&);
 

@@ -14,11 +14,11 @@ namespace alpenglow::pointcloud {
 
 /// Layout of the records of one bake() or bake3d() call.
 struct BakeLayout {
-    bool flat = false; ///< bake(): s, t and the one channel; else bake3d(): P, N, radius and channels
-    std::vector<Channel> channels;
-    int width = 0;     ///< numbers of the channels
-    std::string where; ///< file, line and column of the call: it orders the calls of one point
-    SourcePlace place;
+    bool flat = false;             ///< bake(): s, t and the one channel; else bake3d(): P, N, radius and channels
+    std::vector<Channel> channels; ///< of bake3d(); of bake() the value
+    int width = 0;                 ///< numbers of the channels
+    std::string where;             ///< file, line and column of the call: it orders the calls of one point
+    SourcePlace place;             ///< of the call, for messages
 };
 
 /// Identifies the point of a record: grid points by shape and index, hits of camera rays by pixel.
@@ -26,13 +26,14 @@ struct BakeKey {
     bool camera = false;
     int32_t y = 0, x = 0; ///< grids: shape, point
     int32_t layers = 0;   ///< camera: surfaces before it
-    uint32_t vertex = 0;
-    uint32_t sample = 0;
+    uint32_t vertex = 0;  ///< of the path, as in Sampler::get2(); 0: the camera ray's hit
+    uint32_t sample = 0;  ///< sample of the pixel
 };
 
 /// Who writes a file, by fileIdentity().
 using FileOwners = std::map<std::string, std::string>;
 
+/// Records of bake calls of one frame, ordered at the end, so that files do not depend on threads.
 class BakeLog {
 public:
     /// Adds the numbers of one call: s, t and the value; or P (3), N (3), radius and the channels, in the space of the file.

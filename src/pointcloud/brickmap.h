@@ -40,11 +40,11 @@ bool saveBrickMap(const std::string& name, const PointCloud&, const OutputPolicy
 bool isBrickMap(const std::string& path);
 /// The directory of a brick map.
 struct BrickFacts {
-    std::vector<Channel> channels;
+    std::vector<Channel> channels; ///< in the order of the values
     size_t levels = 0, bricks = 0; ///< bricks: of all levels
     uint64_t points = 0;           ///< of the finest level
     Vec3 corner;                   ///< of the cube about the cloud
-    float side = 0;
+    float side = 0;                ///< of that cube, world space
 };
 /// Returns nothing after an error, which is reported.
 std::optional<BrickFacts> brickFacts(const std::string& path, Diagnostics&);

@@ -39,10 +39,15 @@ public:
     /// Reports a fault of the caller.
     void fault(int code, const std::string& message, const std::string& file, int line);
 
+    /// The pictures kept since the last call, as pictureDict() has them; empty when RIB is written.
     py::list pictures();
+    /// Figures of the last frame as JSON (docs/statistics.md); "{}" where there are none.
     std::string stats() const;
+    /// As the exit status of `alpenglow render`.
     int status() const;
+    /// RIB is written; nothing is rendered.
     bool writing() const { return rendering_ == nullptr; }
+    /// Sets what is called with each message; None: they are dropped.
     void setMessage(py::object m) { message_ = std::move(m); }
 
 private:

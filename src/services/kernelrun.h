@@ -10,7 +10,7 @@ namespace alpenglow::services {
 /// One batch of points, what shades it, and the state of its services.
 struct KernelRun {
     std::shared_ptr<shading::Batch> batch;
-    const BoundKernel* bound = nullptr;
+    const BoundKernel* bound = nullptr;      ///< the kernel with its bound call sites
     const SurfaceBinding* binding = nullptr; ///< of the first point; the light list is the same for all
     std::vector<ShadePoint> points;
     std::vector<shading::PathRay> rays; ///< of the points; ShadePoint::ray points here

@@ -32,8 +32,8 @@ struct LightParameter {
     std::optional<ShaderValue> value; ///< value set by the scene; nothing: the light has no such parameter
     /// Consecutive components of one value.
     struct Part {
-        int from, components;
-        size_t to;
+        int from, components; ///< index of the first, and their number
+        size_t to;            ///< index in the other value
     };
     std::vector<Part> written; ///< written by its kernel: positions in BoundLight::values, and in the answer
 };
@@ -42,10 +42,11 @@ struct LightParameter {
 struct ServiceMemo {
     std::map<std::pair<int32_t, int>, LightParameter> ofLights;                                ///< by name and light
     std::map<std::pair<int32_t, const ShaderInstance*>, std::optional<ShaderValue>> ofShaders; ///< shaderParameter()
+    /// attribute(), by name, row and point.
     std::map<std::tuple<int32_t, int, const scene::Attributes*, const SurfaceBinding*>, std::optional<ShaderValue>> attributes;
     std::map<std::pair<int32_t, const scene::Attributes*>, std::optional<ShaderValue>> filterLinks; ///< scene::FilterLink::acts()
-    std::unordered_map<const scene::Primitive*, std::optional<ShaderValue>> boxes; ///< kObjectBox of queried primitives
-    std::unordered_map<int32_t, std::optional<ShaderValue>> options;
+    std::unordered_map<const scene::Primitive*, std::optional<ShaderValue>> boxes;    ///< kObjectBox of queried primitives
+    std::unordered_map<int32_t, std::optional<ShaderValue>> options;                  ///< option(), by name
     std::unordered_map<int32_t, bool> pointAttributes;                                ///< ofPoint() of a name
     std::unordered_map<const scene::Attributes*, std::pair<float, float>> shadowBias; ///< Attribute "shadow": bias0, bias1
 };
@@ -137,6 +138,7 @@ public:
         if (shearedOctrees_.size() > limits::kShearedOctrees) shearedOctrees_.clear();
     }
     const ptex::Texture* ptexOf(int32_t id, const ServiceCall& call); ///< the same for Ptex files; ptexture.cpp
+    /// Reused from call to call.
     pointcloud::Hemisphere& hemisphere() { return hemisphere_; }
     AlbedoInversions& albedoInversions() { return albedoInversions_; }
 

@@ -8,9 +8,12 @@
 
 namespace alpenglow::models {
 
+/// Takes a scene of assimp over into a Model.
 class AssimpReader {
 public:
+    /// Path: of the file, whose folder has the pictures. Scene and model must outlive the reader.
     AssimpReader(const aiScene& s, std::string path, Model& out) : scene_(s), path_(std::move(path)), out_(out) {}
+    /// Fills the model; what cannot be taken over becomes a note.
     void all();
 
 private:
@@ -46,6 +49,7 @@ private:
     std::set<std::string> said_;
 };
 
+/// To row vectors.
 Matrix assimpMatrix(const aiMatrix4x4&);
 
 } // namespace alpenglow::models

@@ -9,9 +9,12 @@
 
 namespace alpenglow::models {
 
+/// Takes a file that tinygltf has parsed over into a Model.
 class GltfReader {
 public:
+    /// File and model must outlive the reader.
     GltfReader(const tinygltf::Model& in, Model& out) : in_(in), out_(out) {}
+    /// Fills the model; what cannot be taken over becomes a note.
     void all();
 
 private:

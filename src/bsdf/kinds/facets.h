@@ -48,6 +48,7 @@ template <class Facets> struct FacetLobe {
     static constexpr bool distribution = true;
     static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface;
     static constexpr int traits = kCosineOfAxis | kSameFromBoth;
+    /// The axes along and across udir.
     static AL_MEMBER Pair<Direction> tangentsOf(const Given& p) { return {p.ownTriple(0), p.ownTriple(3)}; }
     static AL_MEMBER void prepare(const Rows& p) {
         p.common(Facets::kFresnel ? reflectanceOfFacets(p) : vf(1), spreadOfRoughness(p), vf(0));

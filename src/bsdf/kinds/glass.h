@@ -7,6 +7,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// The lobe "glass-ggx": reflection and refraction, chosen by Fresnel's law.
 struct Glass {
     static constexpr const char* name = "glass-ggx";
     static constexpr const char* doc = "Reflection and refraction at facets with the distribution of Trowbridge and Reitz.";

@@ -27,7 +27,7 @@ AL_INLINE void storeLanes(float* to, vf x) { __builtin_memcpy(to, &x, sizeof x);
 
 /// Lanes of a block.
 struct Given {
-    const float* at;
+    const float* at; ///< row 0 of the lanes
     /// A row (LobeRow), by lane.
     AL_MEMBER vf number(int row) const { return loadLanes(at + row * kStride); }
     /// Three rows from this one on.
@@ -40,8 +40,10 @@ struct Given {
 };
 /// Lanes of a block that prepare() may write.
 struct Rows : Given {
-    float* to;
+    float* to; ///< row 0 of the lanes
+    /// P: row 0 of the lanes, in a block.
     AL_MEMBER explicit Rows(float* p) : Given{p}, to(p) {}
+    /// Write one row, or three from this one on, for all lanes; own(): rows of the kind.
     AL_MEMBER void set(int row, vf x) const { storeLanes(to + row * kStride, x); }
     AL_MEMBER void set(int row, const Direction& v) const { set(row, v.x), set(row + 1, v.y), set(row + 2, v.z); }
     AL_MEMBER void own(int k, vf x) const { set(kRowOwn + k, x); }
@@ -54,8 +56,8 @@ struct Rows : Given {
 };
 /// f cos by channel, and the density of sample() per solid angle.
 struct Value {
-    Direction colour;
-    vf pdf;
+    Direction colour; ///< f cos, by channel
+    vf pdf;           ///< per solid angle
 };
 /// The same f cos in all channels.
 AL_INLINE Value grey(vf f, vf pdf) { return {{f, f, f}, pdf}; }

@@ -29,6 +29,7 @@ struct CallAround {
     size_t argument = 0; ///< from 0
 };
 
+/// One file that an editor has open. Positions are bytes from 0.
 class Document {
 public:
     /// A shader; a scene when `rib` is set, or by the end of its name (".rib").
@@ -38,8 +39,11 @@ public:
     }
     bool rib() const { return rib_; }
 
+    /// As the editor names it.
     const std::string& path() const { return path_; }
+    /// As the editor has it.
     const std::string& text() const { return text_; }
+    /// Replaces the whole text.
     void set(std::string text);
     /// Replaces the bytes [begin, end).
     void replace(size_t begin, size_t end, const std::string& by);
@@ -53,6 +57,7 @@ public:
     const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
     const rsl::Program* program() const { return program_.get(); }
 
+    /// Number of lines, at least 1.
     size_t lines() const { return starts_.size(); }
     /// The text of a line (from 0) without its end; "" beyond the last.
     std::string_view line(size_t) const;
@@ -74,6 +79,7 @@ public:
 
     /// What is used or declared by the word that begins at this position.
     struct Use {
+        /// At most one is set; null: it is none of these.
         const rsl::Symbol* symbol = nullptr;
         const rsl::Function* function = nullptr;
         const rsl::Shader* shader = nullptr;
@@ -85,8 +91,8 @@ public:
     std::map<size_t, Use> uses() const;
     /// A name or keyword of the text outside of comments and strings.
     struct Word {
-        size_t begin, end;
-        bool directive; ///< in a line that the preprocessor reads
+        size_t begin, end; ///< in bytes: first, and behind the last
+        bool directive;    ///< in a line that the preprocessor reads
     };
     std::vector<Word> words() const;
     /// The line and column, from 0, of the name in its "#define".
@@ -96,14 +102,14 @@ public:
     /// The text in front of "->" or "." before a name: "this", "ray", "ray->start"; nothing where there is neither.
     struct Receiver {
         std::string name;
-        bool arrow = false;
+        bool arrow = false; ///< "->" stands there, else "."
     };
     std::optional<Receiver> receiver(size_t word) const;
     /// One thing that a receiver has.
     struct Member {
         std::string name, detail, of; ///< `of`: the class or structure
-        rsl::Place place;
-        bool method = false;
+        rsl::Place place;             ///< of its declaration
+        bool method = false;          ///< it is called
     };
     std::vector<Member> members(const Receiver&, size_t position) const;
     /// The structure of this name; null when there is none.

@@ -9,7 +9,7 @@ std::string manPage(const ProgramText&, const std::string& command);
 
 /// An environment variable that the program reads, and what it is for.
 struct VariableText {
-    const char *name, *help;
+    const char *name, *help; ///< its name; a sentence
 };
 const std::vector<VariableText>& environmentVariables();
 

@@ -26,6 +26,7 @@ template <class Good> CLI::Validator numberCheck(Good good, const std::string& w
         "");
 }
 
+/// Accepts numbers from `least` to `most`; the second one whole numbers only.
 inline CLI::Validator between(double least, double most) {
     return numberCheck([=](double n) { return n >= least && n <= most; }, fmt::format("a number from {} to {}", least, most));
 }

@@ -6,20 +6,24 @@
 
 namespace alpenglow::lanes::AL_NAMESPACE {
 
-inline constexpr int kH = kW / 2;
+inline constexpr int kH = kW / 2; ///< points in half a vector: doubles of the same size
+/// Floats and doubles of half the lanes.
 typedef float hf __attribute__((ext_vector_type(ALPENGLOW_LANES / 2)));
 typedef double hd __attribute__((ext_vector_type(ALPENGLOW_LANES / 2)));
 typedef exact::MaskOf<hd> hm; ///< mask, and integers
 
+/// Three rows in double.
 struct D3 {
-    hd x, y, z;
+    hd x, y, z; ///< by lane
 };
+/// As of Vec3d, by lane.
 AL_INLINE D3 operator+(const D3& a, const D3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 AL_INLINE D3 operator-(const D3& a, const D3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 AL_INLINE D3 operator*(const D3& a, hd s) { return {a.x * s, a.y * s, a.z * s}; }
 AL_INLINE D3 operator/(const D3& a, hd s) { return {a.x / s, a.y / s, a.z / s}; }
 AL_INLINE hd dot(const D3& a, const D3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 AL_INLINE D3 cross(const D3& a, const D3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+/// Rounded correctly.
 AL_INLINE hd rootOf(hd x) { return __builtin_elementwise_sqrt(x); }
 /// Root of a value that rounding may have made negative.
 AL_INLINE hd rootAbove(hd x) { return rootOf(x > 0 ? x : hd(0)); }
@@ -46,6 +50,7 @@ AL_INLINE D3 cornerOf(const FlatEmitter& e, hm t, int corner) {
     return c;
 }
 
+/// Whether the emitter is so near that solid angles count (TriangleLamp::see()).
 AL_INLINE hm isNear(const FlatEmitter& e, const D3& from) {
     const D3 middle = constant(e.centre) - from;
     return dot(middle, middle) < e.near2;
@@ -53,8 +58,8 @@ AL_INLINE hm isNear(const FlatEmitter& e, const D3& from) {
 
 /// The triangles seen from points: TriangleLamp::see().
 struct SeenLanes {
-    hd angle[FlatEmitter::kMost], total;
-    D3 way[3 * FlatEmitter::kMost]; ///< unit, toward the corners
+    hd angle[FlatEmitter::kMost], total; ///< solid angles, steradians: of each triangle, and their sum
+    D3 way[3 * FlatEmitter::kMost];      ///< unit, toward the corners
 };
 AL_INLINE hm seeLamp(const FlatEmitter& e, const D3& from, SeenLanes& s) {
     hm seen = isNear(e, from);
@@ -133,9 +138,9 @@ AL_INLINE void placeByArea(const FlatEmitter& e, hd x, hd y, hm& t, hd& b1, hd& 
 
 /// Points of a block and their positions on the emitter, in double.
 struct alignas(64) PlaceRows {
-    double from[3][kBlock], u[2][kBlock];
+    double from[3][kBlock], u[2][kBlock];         ///< current space; random numbers in [0, 1)
     double b1[kBlock], b2[kBlock], total[kBlock]; ///< total: solid angle; 0: uniform by area
-    int64_t triangle[kBlock];
+    int64_t triangle[kBlock];                     ///< of the emitter
 };
 AL_INLINE hd loadHalf(const double* p) {
     hd v;
@@ -177,6 +182,7 @@ static void placeTogether(const FlatEmitter& e, PlaceRows& r, const int* lanes, 
     }
 }
 
+/// Positions on the emitter for all points of the block.
 AL_INLINE void placeAll(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, PlaceRows& r) {
     int near[kBlock], count = 0, halves = 0; // halves: half registers with some near points
     bool some[kBlock / kH];
@@ -247,6 +253,7 @@ AL_INLINE Lanes seenFrom(const VertexBlock& v, const PlaceRows& r, const double*
     return placed;
 }
 
+/// Stages::place.
 static Lanes placeOnEmitter(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, const double* share,
                             LightBlock& to, float* P, float* N, int stride) {
     PlaceRows r;
@@ -290,6 +297,7 @@ AL_INLINE void placeEach(const VertexBlock& v, const FlatEmitter* const* lamps, 
     }
 }
 
+/// Stages::placeEach.
 static Lanes placeOnEmitters(const VertexBlock& v, const FlatEmitter* const* lamps, const float* x, const float* y,
                              const double* share, LightBlock& to, float* P, float* N, int stride) {
     PlaceRows r;

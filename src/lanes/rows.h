@@ -7,10 +7,12 @@
 namespace alpenglow::lanes::AL_NAMESPACE {
 using namespace shadeops::AL_NAMESPACE;
 
-inline constexpr int kW = ALPENGLOW_LANES;
+inline constexpr int kW = ALPENGLOW_LANES; ///< lanes of a vector
+/// Double and 64-bit integer for each lane.
 typedef double vd __attribute__((ext_vector_type(ALPENGLOW_LANES)));
 typedef uint64_t vq __attribute__((ext_vector_type(ALPENGLOW_LANES)));
 
+/// As many numbers of a row as there are lanes, from p on.
 AL_INLINE vf load(const float* p) {
     vf v;
     __builtin_memcpy(&v, p, sizeof v);
@@ -26,8 +28,10 @@ AL_INLINE vu loadBits(const uint32_t* p) {
     __builtin_memcpy(&v, p, sizeof v);
     return v;
 }
+/// Writes a vector to p, unaligned.
 template <class V> AL_INLINE void store(void* p, V v) { __builtin_memcpy(p, &v, sizeof v); }
 
+/// Masks from and to the bits of a set of points, from point `at` on.
 AL_INLINE vm maskFrom(Lanes bits, int at) {
     vi bit;
     for (int k = 0; k < kW; ++k) bit[k] = 1 << k;
@@ -40,11 +44,12 @@ AL_INLINE Lanes bitsFrom(vm m, int at) {
     __builtin_memcpy(&bits, &b, sizeof b);
     return (bits & ((1u << kW) - 1)) << at;
 }
+/// True where x is neither infinite nor NaN.
 AL_INLINE vm finite(vf x) { return (bitsOf(x) & 0x7f800000u) != 0x7f800000u; }
 
 /// Three rows in registers.
 struct V3 {
-    vf x, y, z;
+    vf x, y, z; ///< by lane
 };
 AL_INLINE V3 load3(const Row* r, int at) { return {load(r[0] + at), load(r[1] + at), load(r[2] + at)}; }
 AL_INLINE V3 load3(const float* rows, int stride) { return {load(rows), load(rows + stride), load(rows + 2 * stride)}; }

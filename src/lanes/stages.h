@@ -18,6 +18,7 @@
 
 namespace alpenglow::lanes {
 
+/// The stages of one lane width.
 struct Stages {
     /// Sets the rows named by `needs` (LobeNeed) for the points of `asked`, and LobeBlock::asked, the points of nonzero weight,
     /// including weights, and LobeBlock::elsewhere. Returns points that must be processed one by one: numbers that are not

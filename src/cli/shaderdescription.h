@@ -31,7 +31,7 @@ struct ParameterDescription {
 /// What the compiler found out about one kind of shader that a class can be, or about the one that a shader is.
 struct KindDescription {
     std::string kind; ///< "surface"
-    /// Predefined variables that it writes; of these, those that receive light of rays without waiting.
+    /// Predefined variables that it writes; texts of the lobe calls that stay direct under path.
     std::vector<std::string> writes, direct;
     bool indirectApart = false; ///< rsl::kPairApart
     /// As `alpenglow info` prints them.

@@ -14,11 +14,11 @@ namespace alpenglow::geometry {
 
 /// A value along a curve and its first two derivatives by f.
 struct Jet {
-    Vec3d f, d, dd;
+    Vec3d f, d, dd; ///< value, first and second derivative
 };
 /// A number with its first and second derivative by v.
 struct ScalarJet {
-    double f = 0, d = 0, dd = 0;
+    double f = 0, d = 0, dd = 0; ///< value, first and second derivative
 };
 /// The product, by the product rule.
 Jet cross(const Jet&, const Jet&);
@@ -29,7 +29,7 @@ Jet unit(const Jet&);
 
 /// One segment, prepared for intersection or evaluation.
 struct CurveSegment {
-    bool linear = false;
+    bool linear = false; ///< from P0 to P1; else cubic
     Vec3d p[4]; ///< cubic: Bezier points. Linear: the point before it, its ends, the point behind it (an end again where there is
                 ///< none)
     double h[4]; ///< half widths: cubic in Bernstein form; linear: at the ends, [0] and [1]. Not negative
@@ -44,13 +44,14 @@ inline constexpr int kTurnsToRay = 12;
 
 /// The direction that the flat side faces.
 struct CurveFacing {
+    /// Where `at` is used, and how.
     enum Kind {
         Along, ///< everywhere along `at`
         Point, ///< toward `at`
         Given, ///< CurveSegment::n
         Round  ///< a tube
     } kind = Along;
-    Vec3d at;
+    Vec3d at;        ///< direction or point, object space
     double side = 1; ///< sign of B along dC/df ^ N
 };
 
@@ -69,10 +70,11 @@ void acrossFrame(const Vec3d& along, Vec3d& a, Vec3d& b);
 
 /// A ray, its direction being the third axis of a frame around the segment.
 struct CurveRay {
-    Vec3d e1, e2, e3; ///< unit
-    Vec3d org;
+    Vec3d e1, e2, e3;     ///< unit
+    Vec3d org;            ///< object space
     double length, shift; ///< of the direction; t of org
     double lo, hi;        ///< t
+    /// Near: a point of the segment; hits are wanted from lo to hi.
     CurveRay(const Vec3d& o, const Vec3d& d, const Vec3d& near, double lo, double hi);
     /// A direction of object space in the axes of the ray.
     Vec3d turned(const Vec3d& v) const { return {dot(v, e1), dot(v, e2), dot(v, e3)}; }

@@ -5,6 +5,7 @@
 
 namespace alpenglow::geometry {
 
+/// What dicing one shape took.
 struct DiceCost {
     double seconds = 0; ///< of a processor
     size_t bytes = 0;   ///< of the mesh

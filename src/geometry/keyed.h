@@ -20,6 +20,7 @@ inline size_t keyBefore(const std::vector<float>& times, float time, double& way
 /// Whether a shape is a key of a moving shape: pieces that are empty at one key may not be at another.
 inline bool isKey(const ShapeSource& s) { return s.like || !s.primitive->motionKeys.empty(); }
 
+/// A shape whose primitive has several keys: it is cut at each key alike, and interpolated between them.
 class KeyedShape : public Shape {
 public:
     using Shape::Shape;

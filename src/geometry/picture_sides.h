@@ -29,6 +29,7 @@ struct DiceOptions;
 /// Parts of a static shape that no ray can reach, for any displacement within its bound.
 class Unseen {
 public:
+    /// For a shape that is not diced yet.
     Unseen(const Shape&, const DiceOptions&);
     /// Whether nothing of the shape may be omitted.
     bool none() const { return !sides_; }

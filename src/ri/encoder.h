@@ -7,11 +7,13 @@ namespace alpenglow::ri {
 /// Tokens of a stream, request by request.
 class RibEncoder {
 public:
+    /// To: receives the bytes.
     RibEncoder(std::unique_ptr<ByteSink> to) : to_(std::move(to)) {}
     virtual ~RibEncoder() = default;
     /// Whether only the nearest float of a number counts.
     enum class Precision { Exact, Float };
 
+    /// The name; its arguments follow, then end().
     virtual void begin(std::string_view request) = 0;
     /// Numbers without brackets.
     virtual void bare(std::span<const double>, Precision) = 0;

@@ -39,19 +39,19 @@ enum class Use { Shader, Primitive, Option, Attribute, Hider, Display, Other };
 
 /// A value in a condition.
 struct ConditionValue {
-    bool isString = false;
-    double number = 0;
-    std::string text;
+    bool isString = false; ///< else a number
+    double number = 0;     ///< its value
+    std::string text;      ///< its value
 };
 
-using NamedSystems = std::map<std::string, scene::Transform>;
+using NamedSystems = std::map<std::string, scene::Transform>; ///< by name: from the space to world; before WorldBegin to camera
 
 /// What AttributeBegin saves.
 struct GraphicsState {
-    std::shared_ptr<scene::Attributes> attributes;
-    scene::Transform ctm;                       ///< current to world; before WorldBegin to camera
-    std::shared_ptr<const NamedSystems> scoped; ///< ScopedCoordinateSystem
-    LightFilters filters;                       ///< of the lights that follow
+    std::shared_ptr<scene::Attributes> attributes; ///< never null; copied before a change if it is shared
+    scene::Transform ctm;                          ///< current to world; before WorldBegin to camera
+    std::shared_ptr<const NamedSystems> scoped;    ///< ScopedCoordinateSystem
+    LightFilters filters;                          ///< of the lights that follow
 };
 
 /// A stored object: primitives in its own space, and what decides whether its light indices are still valid.
@@ -99,11 +99,12 @@ public:
     Reporter reporter;
     ReaderOptions settings;
     scene::FrameConsumer& consumer;
-    Declarations declarations;
-    scene::Options options;
+    Declarations declarations; ///< of Declare, and those that the language has
+    scene::Options options;    ///< of the frame, until WorldBegin
     GraphicsState state;
     std::vector<double> nRGB; ///< ColorSamples: n x 3; empty = colours are RGB
 
+    /// Between WorldBegin and WorldEnd.
     bool inWorld() const { return frame_ != nullptr; }
     /// The current attributes, for changes. Earlier snapshots keep their values.
     scene::Attributes& attributes();
@@ -151,6 +152,7 @@ public:
     void lightFilter(const Call& call);  ///< LightFilter
     void enableFilter(const Call& call); ///< EnableLightFilter
     void editWorld(const Call& call);    ///< EditWorldBegin
+    /// EditWorldEnd.
     void endEditWorld(const Call& call);
     void linksFilters() { linksFilters_ = true; } ///< Attribute "lightfilter"
     void isRis() { ris_ = true; }                 ///< the scene has requests of RIS

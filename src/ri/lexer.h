@@ -13,10 +13,11 @@ namespace alpenglow::ri {
 
 struct Request;
 
+/// A token of a stream, ASCII or binary.
 struct Token {
     enum class Kind { End, Identifier, Number, String, Open, Close, Floats /* a whole binary array */ };
-    Kind kind = Kind::End;
-    double number = 0;
+    Kind kind = Kind::End;      ///< what it is
+    double number = 0;          ///< of Number
     std::string text;           ///< identifier or string
     std::vector<double> floats; ///< Kind::Floats
     /// Of an identifier that has a code, where findRequest() leads, and then there may be no text; null: not known.
@@ -25,6 +26,7 @@ struct Token {
     size_t lineStart = 0;     ///< stream offset of that line
 };
 
+/// Splits a stream into tokens, line by line. Errors are reported, and the bytes skipped.
 class Lexer {
 public:
     /// Called with "comment" or "structure" and the text after # or ##.

@@ -12,6 +12,7 @@ class OpenArchives {
 public:
     OpenArchives() = default;
     OpenArchives(const OpenArchives&) = default;
+    /// Take over without counting.
     OpenArchives(OpenArchives&& o) noexcept : last_(std::move(o.last_)) {}
     OpenArchives& operator=(OpenArchives o) noexcept {
         last_.swap(o.last_);
@@ -21,8 +22,11 @@ public:
         // One by one: links that free each other would recurse.
         while (last_ && last_.use_count() == 1) last_ = std::shared_ptr<Link>(std::move(last_->outer));
     }
+    /// Number of open archives.
     size_t size() const { return last_ ? last_->count : 0; }
+    /// None is open.
     bool empty() const { return !last_; }
+    /// Opens an archive within the innermost.
     void push(std::string key) {
         const size_t count = size() + 1;
         last_ = std::make_shared<Link>(Link{std::move(key), std::move(last_), count});

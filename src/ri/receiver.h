@@ -11,6 +11,7 @@ namespace alpenglow::ri {
 class RequestReceiver {
 public:
     virtual ~RequestReceiver() = default;
+    /// The next request; the call may change afterwards.
     virtual void request(const Call&) = 0;
     /// One that is not in the table, with all values up to the next name.
     virtual void unknown(const std::string& name, const std::vector<Value>& values) = 0;

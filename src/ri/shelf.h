@@ -13,6 +13,7 @@ class ArchiveShelf {
 public:
     static constexpr uint64_t kArchive = 1u << 20; ///< bytes of an archive that is kept, at most
     static constexpr uint64_t kAll = 16u << 20;    ///< of all that are kept
+    /// Where a look-up led.
     struct Found {
         std::string file, key; ///< name for messages; path without links, which identifies the file
     };

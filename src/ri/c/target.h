@@ -53,6 +53,7 @@ private:
 /// Executes calls.
 class InterpreterTarget : public Target {
 public:
+    /// The interpreter must outlive the target.
     explicit InterpreterTarget(Interpreter& in) : in_(in) {}
     void execute(const Call&) override;
     Reporter& reporter() override { return in_.reporter; }

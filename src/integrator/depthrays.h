@@ -10,6 +10,7 @@ class MediaStacks;
 class Opacities;
 struct StageSet;
 
+/// Traces camera rays for their transmittance alone.
 class DepthRays final : Stage {
 public:
     explicit DepthRays(const StageSet&);

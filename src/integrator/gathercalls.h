@@ -13,11 +13,11 @@ struct StageSet;
 /// A ray of a gather() whose hit must be shaded, and where the result goes.
 struct GatherSent {
     PathRay ray;
-    float* row = nullptr; ///< in GatherRows
-    const geometry::Shape* met = nullptr;
-    const GatherSite* site = nullptr;
-    bool quiet = false;  ///< light and opacity are in the row already
-    bool shaded = false; ///< the shaders at the hit have run
+    float* row = nullptr;                 ///< in GatherRows
+    const geometry::Shape* met = nullptr; ///< what the ray hit; null: nothing
+    const GatherSite* site = nullptr;     ///< of its statement
+    bool quiet = false;                   ///< light and opacity are in the row already
+    bool shaded = false;                  ///< the shaders at the hit have run
     /// Values of GatherSite::sent, one behind the other.
     std::vector<float> values;
     /// By entry of GatherSite::sent, where its values end.
@@ -25,6 +25,7 @@ struct GatherSent {
     shading::GivenValue value(size_t sent) const;
 };
 
+/// Answers gather().
 class GatherCalls final : Stage {
 public:
     explicit GatherCalls(const StageSet&);

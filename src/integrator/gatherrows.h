@@ -13,6 +13,7 @@ struct StageSet;
 void putGathered(float* row, const GatherSite::Output&, std::initializer_list<float>);
 void putGathered(float* row, const GatherSite::Output&, const Vec3&);
 void putGathered(float* row, const GatherSite::Output&, const ShaderValue&); ///< of any type that converts to the variable's
+/// Write "ray:..." values, and those of the hit, to a ray's row. Camera space, unit direction.
 void tellRay(const GatherSite&, float* row, const Vec3& origin, const Vec3& dir, float distance);
 void tellHit(const WorldImpl&, const GatherSite&, float* row, const accel::Hit&, const Vec3& dir);
 /// Finds the first surface at which the accumulated opacity reaches the threshold, by channel, 0 to 1; the first one at all

@@ -9,6 +9,7 @@ namespace alpenglow::integrator {
 struct StageSet;
 class WaitingKernels;
 
+/// Collects hits for kernels.
 class HitQueues final : Stage {
 public:
     explicit HitQueues(const StageSet&);

@@ -20,8 +20,10 @@ namespace alpenglow::integrator {
 /// World::build() with an Evaluator that runs kernels as the integrator does.
 std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame>, const Settings&, Diagnostics&);
 
+/// Light along camera rays. One for each thread; it is expensive to construct.
 class Integrator {
 public:
+    /// Of World::build(); diagnostics outlive this.
     explicit Integrator(std::shared_ptr<const World>, Diagnostics&);
     ~Integrator();
     /// Traces all rays to the end. Results do not depend on which rays share a call. Returns false if `stop` was set; the results
@@ -51,6 +53,7 @@ struct PhotonUse {
 /// Emits photons in one world, which must have been built for the hider path.
 class PhotonEmission {
 public:
+    /// For one PhotonUse. Diagnostics outlive this.
     PhotonEmission(std::shared_ptr<const World>, const PhotonUse&, Diagnostics&);
     ~PhotonEmission();
     bool lights() const;  ///< whether any light emits
@@ -65,6 +68,7 @@ public:
     /// The emitter of one thread.
     class Thread {
     public:
+        /// Diagnostics receive what this thread reports.
         Thread(const PhotonEmission&, Diagnostics&);
         ~Thread();
         /// Emits photons `first` to first + count - 1 of a pass of `emitted` photons and appends the stored ones to `out`, in the

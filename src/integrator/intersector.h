@@ -7,6 +7,7 @@ namespace alpenglow::integrator {
 
 struct StageSet;
 
+/// Finds what rays hit. Every ray passes through it.
 class Intersector final : Stage {
 public:
     explicit Intersector(const StageSet&);

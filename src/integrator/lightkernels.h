@@ -19,6 +19,7 @@ class RayStore;
 class ShadowRays;
 struct StageSet;
 
+/// Runs the kernels of lights.
 class LightKernels final : Stage, public Tracer {
 public:
     explicit LightKernels(const StageSet&);

@@ -7,6 +7,7 @@ namespace alpenglow::integrator {
 
 struct StageSet;
 
+/// Advances the automaton of light path outputs.
 class LightPathStates final : Stage {
 public:
     explicit LightPathStates(const StageSet&);

@@ -8,7 +8,7 @@ namespace alpenglow::integrator {
 
 /// The random numbers of a light sample.
 struct LightNumbers {
-    Vec2 pair;
+    Vec2 pair;        ///< in [0, 1)
     float choose = 0; ///< selects a shape of the emitter
 };
 /// Whether a light uses LightNumbers::pair. `path`: under the hider path, which samples cones.
@@ -30,8 +30,8 @@ struct GuidedDraw {
 };
 /// The same for a block of points.
 struct GuidedLanes {
-    Lanes guided = 0, toward = 0; ///< points with a cell; with a direction of the guide
-    const LightGuide::Cell* cell[kBlock];
+    Lanes guided = 0, toward = 0;         ///< points with a cell; with a direction of the guide
+    const LightGuide::Cell* cell[kBlock]; ///< by point; null: the light has no guide there
     /// x of the points' numbers as in GuidedDraw.
     GuidedLanes(const LightGuide*, const VertexBlock&, Lanes points, float* x);
 };

@@ -19,10 +19,12 @@ class MediumEvents;
 class ShadowRays;
 struct LightNumbers;
 
+/// Samples lights for the vertices of a batch.
 class LightSampling final : VertexStage {
 public:
     LightSampling(const StageSet&, const VertexStages&);
     ~LightSampling();
+    /// For all blocks of the batch; shadow rays go to ShadowRays::queue.
     void run(BatchContext&, Sched&);
     /// Records what lights may query of the lit surfaces: VertexBlocks::litSurface.
     void tellLights(const BatchContext&);

@@ -11,6 +11,7 @@ namespace alpenglow::integrator {
 class Accumulator;
 class MediumEvents;
 
+/// Decides which lobes are followed, and how likely.
 class LobeSelection final : VertexStage {
 public:
     LobeSelection(const StageSet&, const VertexStages&);

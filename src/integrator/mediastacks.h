@@ -12,13 +12,15 @@ struct StageSet;
 /// A segment of a shadow ray inside a medium.
 struct MediumPart {
     int medium;
-    size_t ray;
-    Vec3 from, to;
+    size_t ray;    ///< index in the list of rays
+    Vec3 from, to; ///< camera space
 };
 
+/// Keeps the volumes of rays, and attenuates shadow rays in them.
 class MediaStacks final : Stage {
 public:
     explicit MediaStacks(const StageSet&);
+    /// Of WorldImpl::media(): the active one; -1: a vacuum.
     static int mediumOf(const shading::Media* m) { return m ? m->top() : -1; }
     /// The media at the start of a ray from a point of a batch in direction w.
     const shading::Media* towards(const KernelRun&, int point, const Vec3& w);

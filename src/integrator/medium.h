@@ -52,6 +52,7 @@ struct StageSet;
 ///  Joint Importance Sampling of Low-Order Anisotropic Volume Scattering, 2013).
 class MediumEvents final : Stage, public SegmentEvent {
 public:
+    /// With the media of the world.
     explicit MediumEvents(const StageSet&);
     void happen(std::span<RaySegment>, Sched&) override;
     /// Does nothing: MediaStacks::dim() applies the transmittance.

@@ -16,6 +16,7 @@ class ShadowRays;
 struct StageSet;
 class SurfacePoints;
 
+/// Makes the rays of hemisphere calls.
 class OcclusionCalls final : Stage {
 public:
     explicit OcclusionCalls(const StageSet&);

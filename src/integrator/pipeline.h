@@ -8,8 +8,10 @@
 
 namespace alpenglow::integrator {
 
+/// All stages of one thread.
 class Pipeline final : public shading::Sched::RayService {
 public:
+    /// Of World::build(); diagnostics outlive this.
     Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&);
     ~Pipeline() override;
     /// Traces camera rays to the end. Results do not depend on which rays share a call. Returns false if `stop` was set; `out` is
@@ -24,6 +26,7 @@ public:
     bool settle(shading::Sched&) override;
     void followStrips(shading::Sched&) override;
 
+    /// Of this pipeline; valid as long as it.
     const StageSet& stages() const;
     const WorldImpl& world() const;
     Counters& counters();

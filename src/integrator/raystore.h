@@ -12,6 +12,7 @@ struct BatchContext;
 struct CameraRay;
 struct StageSet;
 
+/// Keeps what rays refer to until all rays of a call are traced.
 class RayStore final : Stage {
 public:
     explicit RayStore(const StageSet&);
@@ -27,6 +28,7 @@ public:
     shading::RaySet raySetOf(const SiteInfo&, const std::function<float(int)>& f, const geometry::Shape* from, RayType& type,
                              int32_t& label);
 
+    /// Defaults where the ray has none.
     const RayExtra& extraOf(const PathRay& r) const { return r.extra < 0 ? noExtra_ : extras_[size_t(r.extra)]; }
     /// The extras of a ray that has some.
     RayExtra& ownExtra(const PathRay& r) { return extras_[size_t(r.extra)]; }

@@ -23,25 +23,27 @@ struct MediumSegments {
 
 /// Counts of one integrator thread; the renderer adds them up.
 struct Counters {
-    uint64_t camera = 0, diffuse = 0, specular = 0, transmission = 0, shadow = 0;
+    uint64_t camera = 0, diffuse = 0, specular = 0, transmission = 0, shadow = 0; ///< rays, by type
     uint64_t reflected = 0, refracted = 0; ///< specular rays that stay on their side of a surface, and those that cross it
     uint64_t totalReflected = 0;           ///< specular rays with "label" "totalreflection"
     uint64_t ignored = 0;                  ///< rays of trace() that were not sent because their "weight" is 0
     uint64_t tests = 0, hits = 0;          ///< intersection queries, and those with a hit
+    /// Shaded points; runs of kernels; lanes with a point, and lanes that ran.
     uint64_t points = 0, batches = 0, lanesUsed = 0, lanesRun = 0;
     uint64_t inRows = 0; ///< of `points`, those whose requests were read in rows; for waiting kernels, their calls
+    /// Dropped because a value is not finite; hits above 1e30; paths that limits::kPathDepth ended.
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
-    uint64_t depthSum = 0, paths = 0;
-    uint64_t guided = 0;      ///< rays aimed by the caustic guide; also counted in the other counters
-    uint64_t guidedLit = 0;   ///< those that found light
-    uint64_t guidedLight = 0; ///< sum of the luminance they brought, in units of kLightUnit: exact in any order
-    static constexpr double kLightUnit = 0x1p-20;
-    uint64_t records = 0, interpolated = 0; ///< irradiance records made, and lookups interpolated from them
-    int depthMax = 0;
-    size_t peakFrameBytes = 0;         ///< largest size of suspended kernel frames at one time, over all threads
-    size_t threadBytes = 0;            ///< most memory of rays, points, columns and frames of one thread
-    std::vector<MediumSegments> media; ///< by WorldImpl::media(); may be shorter
-    void operator+=(const Counters&);
+    uint64_t depthSum = 0, paths = 0; ///< bounces of all paths, and their number
+    uint64_t guided = 0;              ///< rays aimed by the caustic guide; also counted in the other counters
+    uint64_t guidedLit = 0;           ///< those that found light
+    uint64_t guidedLight = 0;         ///< sum of the luminance they brought, in units of kLightUnit: exact in any order
+    static constexpr double kLightUnit = 0x1p-20; ///< unit of guidedLight
+    uint64_t records = 0, interpolated = 0;       ///< irradiance records made, and lookups interpolated from them
+    int depthMax = 0;                             ///< bounces of the longest path
+    size_t peakFrameBytes = 0;                    ///< largest size of suspended kernel frames at one time, over all threads
+    size_t threadBytes = 0;                       ///< most memory of rays, points, columns and frames of one thread
+    std::vector<MediumSegments> media;            ///< by WorldImpl::media(); may be shorter
+    void operator+=(const Counters&);             ///< Adds sums; keeps the larger of maxima.
 };
 
 /// A camera ray: raster position and sample number. Camera space.
@@ -66,10 +68,11 @@ struct CameraRay {
 /// Transmittance behind a surface at depth z (camera space), by channel, 0 to 1.
 struct DepthStep {
     float z;
-    Color left;
+    Color left;                                 ///< by channel
     const scene::Attributes* surface = nullptr; ///< of the surface that the light meets there; null: a medium. Lives as the world
 };
 
+/// What a camera ray found.
 struct SampleResult {
     Color color{0}, opacity{0};       ///< premultiplied; color includes light from behind
     float z = 1e38f, zSecond = 1e38f; ///< camera depth of the first and second surface; 1e38 = none

@@ -11,6 +11,7 @@ class PhotonStage;
 class RayStore;
 struct StageSet;
 
+/// Runs what happens between two surfaces.
 class SegmentEvents final : Stage {
 public:
     explicit SegmentEvents(const StageSet&);
@@ -23,7 +24,7 @@ public:
     /// covered, if it goes straight on.
     void spawn(RaySegment&, PathRay next, Sched&, float way = 0);
 
-    std::vector<SegmentEvent*> events;
+    std::vector<SegmentEvent*> events; ///< in their order; empty: none
 
 private:
     std::vector<RaySegment> list_;

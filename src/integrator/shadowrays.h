@@ -16,6 +16,7 @@ class Opacities;
 class RayStore;
 struct StageSet;
 
+/// Traces queued shadow rays.
 class ShadowRays final : Stage {
 public:
     explicit ShadowRays(const StageSet&);
@@ -36,7 +37,7 @@ public:
         if (context_.seen) noted_.push_back({s, queue.size() - 1});
     }
 
-    std::vector<ShadowRay> queue;
+    std::vector<ShadowRay> queue;      ///< rays to be traced
     std::vector<MoreLight> more;       ///< further light along rays of the queue
     std::vector<Contribution> settled; ///< contributions that need no ray, added with the queue
 

@@ -11,15 +11,16 @@ void putResult(const SiteInfo&, const shading::TargetValue&, const TraceSums* su
 
 /// The pending request of a strip.
 struct StripRequest {
-    int site = 0, first = 0, lanes = 0; ///< of the kernel; first point of the strip; lanes of the rows
-    bool gather = false;                ///< rays of a gather(), which have been intersected already
-    const StripMemory* memory = nullptr;
-    const uint32_t* asked = nullptr; ///< by lane: rays requested before
+    int site = 0, first = 0, lanes = 0;  ///< of the kernel; first point of the strip; lanes of the rows
+    bool gather = false;                 ///< rays of a gather(), which have been intersected already
+    const StripMemory* memory = nullptr; ///< arguments and results; null: there is no request
+    const uint32_t* asked = nullptr;     ///< by lane: rays requested before
 };
 
 /// A suspended strip. Its request is processed together with those of other strips of its batch (WaitingKernels::follow).
 class KernelStrip final : public Sched::Strip {
 public:
+    /// Handle: of the suspended coroutine; first: point of the batch.
     KernelStrip(WaitingKernels&, std::shared_ptr<BatchContext>, void* handle, int first, int depth);
     ~KernelStrip() override;
     int depth() const override { return depth_; }

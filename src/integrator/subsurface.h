@@ -20,7 +20,9 @@ class ShadowRays;
 /// The walks that a batch has requested, and their exits: points that gather light as diffuse() does.
 class Walks final : Stage {
 public:
+    /// The batch and both lists outlive this.
     Walks(const StageSet&, BatchContext&, std::span<const WalkAsked>, std::span<const SubsurfaceMedium>);
+    /// Follows all walks to their exits and lights these.
     void run(Sched&);
 
 private:

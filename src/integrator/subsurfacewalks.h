@@ -11,6 +11,7 @@ namespace alpenglow::integrator {
 class OcclusionCalls;
 struct StageSet;
 
+/// Collects subsurface walks.
 class SubsurfaceWalks final : Stage {
 public:
     explicit SubsurfaceWalks(const StageSet&);
@@ -31,7 +32,7 @@ public:
 
     std::vector<SubsurfaceMedium> below; ///< for Requests::lobes
     std::vector<WalkAsked> walks;        ///< requested by the lobes of a batch; removed when these are done
-    AlbedoInversions albedoInversions;
+    AlbedoInversions albedoInversions;   ///< of this thread
 
 private:
     int groupNamed(const std::string&);

@@ -24,6 +24,7 @@ struct StageSet;
 class Transparency;
 class WaitingKernels;
 
+/// Runs surface kernels.
 class SurfaceShading final : Stage {
 public:
     explicit SurfaceShading(const StageSet&);

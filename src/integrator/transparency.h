@@ -15,6 +15,7 @@ struct StageSet;
 /// Whether all points of a batch that has run are opaque.
 bool isOpaque(const shading::Batch&);
 
+/// Continues rays behind transparent surfaces.
 class Transparency final : Stage {
 public:
     explicit Transparency(const StageSet&);

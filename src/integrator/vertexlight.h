@@ -30,6 +30,7 @@ class SubsurfaceWalks;
 class SurfacePoints;
 struct VertexStages;
 
+/// Runs the stages over the vertices of a batch.
 class VertexLight final : Stage {
 public:
     explicit VertexLight(const StageSet&);

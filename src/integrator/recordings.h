@@ -9,7 +9,8 @@ struct Recording {
     LightRecord record;       ///< the record, as far as it is known
     std::array<Vec3, 3> axes; ///< of the hemisphere, camera space; the last one is its axis
     int rings = 1, turns = 1; ///< of the stratification: over the polar angle, over the azimuth
-    /// Of the call: footprint, "maxdist", distance of the farthest hit that counts, and "bias".
+    /// `pixel`: width of a pixel there, camera space; `most`: largest radius of the record, in pixels; the others: "maxdist" and
+    /// "bias" of the call.
     float pixel = 0, most = 0, reach = 1e38f, bias = -1;
     shading::Fade fade;                 ///< of the call
     Color tint{1};                      ///< of the environment map

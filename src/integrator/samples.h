@@ -31,7 +31,7 @@ struct Counters {
     /// Shaded points; runs of kernels; lanes with a point, and lanes that ran.
     uint64_t points = 0, batches = 0, lanesUsed = 0, lanesRun = 0;
     uint64_t inRows = 0; ///< of `points`, those whose requests were read in rows; for waiting kernels, their calls
-    /// Dropped because a value is not finite; hits above 1e30; paths that limits::kPathDepth ended.
+    /// Values that are not finite; rays dropped for lack of frame memory; paths that limits::kPathDepth ended.
     uint64_t nonFinite = 0, overLimit = 0, depthCap = 0;
     uint64_t depthSum = 0, paths = 0; ///< bounces of all paths, and their number
     uint64_t guided = 0;              ///< rays aimed by the caustic guide; also counted in the other counters

@@ -20,7 +20,7 @@ struct LitValues {
 /// A subsurface walk that was selected: from `point` of the batch, with its throughput to the target.
 struct WalkAsked {
     int point = 0;
-    int32_t below = -1; ///< index in SubsurfaceWalks' media
+    int32_t below = -1; ///< index in SubsurfaceWalks::below
     Color weight;       ///< by channel
     AccumulatorId target = shading::kNoAccumulator;
     uint32_t vertex = 0; ///< random number key

@@ -44,8 +44,10 @@ public:
     FrameProcesses(const FrameProcesses&) = delete;
     FrameProcesses& operator=(const FrameProcesses&) = delete;
 
+    /// Frames that are rendered at a time.
     int most() const { return use_.most; }
     bool inProcess() const { return process_; } ///< this process was forked by start()
+    /// Of this frame.
     const Diagnostics& messages() const { return messages_; }
     /// Sets the receiver of each frame's result, in frame order, after its messages have been printed.
     void setTake(Take t) { take_ = std::move(t); }

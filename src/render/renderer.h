@@ -17,6 +17,7 @@ namespace alpenglow::render {
 
 class FrameProcesses;
 
+/// Renders the frames of a run, one after the other.
 class Renderer final : public scene::FrameConsumer {
 public:
     /// Prints the results of `--pixel`, one line a call, without line end.
@@ -50,7 +51,7 @@ public:
     /// Call after the last scene: reports if picture options had no effect because all frames were maps.
     void finish();
 
-    using Outcome = render::Outcome;
+    using Outcome = render::Outcome; ///< as of render
     /// For frames rendered so far; complete after settle().
     const Outcome& outcome() const { return outcome_; }
     /// Figures of all frames so far: times, rays and counts are sums; size, samples and noise are the last frame's.

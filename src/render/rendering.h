@@ -30,6 +30,7 @@ inline constexpr size_t kBandBytes = size_t(2) << 20;
 
 /// A frame during rendering.
 struct Job {
+    /// Given to the constructor; they outlive the job.
     const RenderSettings& settings;
     const Camera& camera;
     const OutputPlan& plan;
@@ -47,11 +48,12 @@ struct Job {
     std::exception_ptr outOfMemory;               ///< set if the samples of a pass did not fit; complete passes remain
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, at the last report
-    std::atomic<uint64_t> rayTotal{0};
-    integrator::LightGuideFigures lightGuide;   ///< of path
-    world::GuideFigures guide;                  ///< of path
-    std::atomic<bool> met{false}, shone{false}; ///< some camera ray hit a surface; carried light
+    std::atomic<uint64_t> rayTotal{0};            ///< at the last report, of all workers
+    integrator::LightGuideFigures lightGuide;     ///< of path
+    world::GuideFigures guide;                    ///< of path
+    std::atomic<bool> met{false}, shone{false};   ///< some camera ray hit a surface; carried light
 
+    /// Threads: 0 all cores.
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const world::World>, int threads,
         Progress&, Diagnostics&);
     /// Builds the world with procedurals that rays reached (world/procedurals.h), by number; returns null if the user stops, or
@@ -90,8 +92,8 @@ std::vector<Window> tilesOf(const Window&, int side = kTile);
 integrator::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
 /// The same for many samples at a time.
 struct PixelSample {
-    int x, y;
-    uint32_t sample;
+    int x, y;        ///< pixel
+    uint32_t sample; ///< index in the pixel
 };
 void pathRays(const Camera&, const FilterSampler&, uint64_t seed, std::span<const PixelSample>, NumberRows&,
               std::vector<integrator::CameraRay>& rays, std::vector<float>& weights);
@@ -114,6 +116,7 @@ bool shadesMicropolygons(const scene::Options&, bool hidden, const Camera&, Diag
 struct Refinement {
     int side = 1;           ///< 3, 5, 7 or 9; 1: none
     float threshold = 0.3f; ///< threshold for the sum of the differences of red, green and blue, each clamped to 0 .. 1
+    /// There is a second round.
     bool on() const { return side > 1; }
 };
 /// The hider's parameters aaSamples and aaThreshold; none if a lens or motion needs more rays, which is reported.
@@ -125,8 +128,11 @@ struct Refined {
 /// The camera rays of image samples, many at a time.
 class ImageRays {
 public:
+    /// Nx, ny: samples of a pixel.
     ImageRays(const Camera&, uint64_t seed, int nx, int ny, Jitter);
+    /// Drops requests; memory stays.
     void clear();
+    /// Requests sample k, 0 <= k < nx ny, of a pixel.
     void ask(int x, int y, int k);
     /// Makes the rays requested since clear(): places()[i] in its pixel and rays()[i] belong to the i-th request.
     void make();
@@ -148,14 +154,14 @@ private:
 };
 /// Samples with values that are not finite: their number, and sample, y and x of the first.
 struct DroppedSamples {
-    uint64_t count = 0;
-    std::optional<std::array<int, 3>> first;
+    uint64_t count = 0;                      ///< number of samples
+    std::optional<std::array<int, 3>> first; ///< sample, y, x
 };
 /// Reconstructed pictures: plan.pictures[i] has images[of[i]].
 struct Reconstructions {
     std::vector<Image> images;
     std::vector<size_t> of;
-    Refined refined;
+    Refined refined;   ///< of hider raytrace
     bool begun = true; ///< false: the user stopped before any part was complete
 };
 /// If the user stops, unreached pixels stay black. `memory`: of the samples, reused from frame to frame if small, because new

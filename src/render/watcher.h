@@ -9,10 +9,10 @@ namespace alpenglow::render {
 
 /// A frame that is about to be rendered. All of it is valid until Watcher::finished().
 struct WatchedFrame {
-    const OutputPlan& plan;
-    const PictureFacts& picture;
-    std::shared_ptr<const world::World> world;
-    const Imager& imager; ///< may be empty
+    const OutputPlan& plan;                    ///< planned pictures
+    const PictureFacts& picture;               ///< for the headers of pictures
+    std::shared_ptr<const world::World> world; ///< never null
+    const Imager& imager;                      ///< may be empty
 };
 
 /// The picture so far.

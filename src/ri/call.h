@@ -45,6 +45,7 @@ struct Call {
     double number(size_t i, size_t k = 0) const { return arguments[i].numbers[k]; }
     float real(size_t i, size_t k = 0) const;                            ///< as float, clamped to +-3.4e38
     int integer(size_t i) const { return int(arguments[i].numbers[0]); } ///< matched: whole and in range
+    /// The text of an argument, or all its numbers and texts.
     const std::string& text(size_t i) const { return arguments[i].strings[0]; }
     const std::vector<double>& numbers(size_t i) const { return arguments[i].numbers; }
     const std::vector<std::string>& strings(size_t i) const { return arguments[i].strings; }

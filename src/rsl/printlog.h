@@ -19,9 +19,9 @@ namespace alpenglow::rsl {
 
 /// Where a message belongs: samples first, within a sample the pixels row by row, within a pixel the path from the camera on.
 struct PrintKey {
-    int64_t sample = -1; ///< -1: before all samples (dicing)
-    int32_t y = 0, x = 0;
-    int32_t bounces = 0;
+    int64_t sample = -1;          ///< -1: before all samples (dicing)
+    int32_t y = 0, x = 0;         ///< pixel
+    int32_t bounces = 0;          ///< since the camera
     uint32_t vertex = 0;          ///< hash of the path to the point
     std::string program;          ///< file of the shader
     std::array<float, 3> place{}; ///< the point: shaders of lights run for several of one vertex

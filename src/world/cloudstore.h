@@ -15,6 +15,7 @@ struct BoundLight;
 /// The maps of one world. Lookups and baking are thread safe; setting up and writing are not.
 class CloudStore {
 public:
+    /// Files: where names are looked up.
     CloudStore(MapFiles files, Diagnostics& d) : files_(std::move(files)), diagnostics_(d) {}
     /// The map of this name, read at first use. Returns null if it does not exist, which is reported once. Thread safe; the map
     /// lives as long as the store.
@@ -30,7 +31,7 @@ public:
     /// Maps in which no texture3d() lookup found anything, by name, each with its first call in order of file and line.
     std::vector<std::pair<std::string, SourcePlace>> foundNothing();
 
-    pointcloud::BakeLog baked;
+    pointcloud::BakeLog baked; ///< records of this frame
     /// Set while the world is built: a surface kernel bakes; one of its calls may request micropolygon centres.
     bool bakes = false, centres = false;
     /// Whether to record which lights run: a few points decide whether a primitive bakes, but only for lights that ran there.

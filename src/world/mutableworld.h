@@ -172,7 +172,7 @@ public:
     using WorldImpl::wanted_;
     using WorldImpl::worldToCamera_;
 
-    std::shared_ptr<rsl::ShaderCompiler> compiler_;
+    std::shared_ptr<rsl::ShaderCompiler> compiler_;             ///< of all shaders
     std::map<const scene::ShaderCall*, InstanceRef> coShaders_; ///< one instance for each request
     std::vector<std::string> lightMessages_; ///< parameters of surfaces that lights and atmospheres query, sorted
     /// Outputs of displacement shaders that lights query; "": names computed at run time.

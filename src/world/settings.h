@@ -12,26 +12,28 @@
 
 namespace alpenglow::world {
 
+/// How a frame is rendered: RenderMan's hiders, or the path tracer.
 enum class Hider { Hidden, Raytrace, Path };
 
 /// Sampling of points on a ray segment in a medium that is lit by lights with positions (tests: all have the same mean).
 enum class MediumSampling : uint8_t { Both, Distance, Equiangular };
 
+/// What a world is built for, beyond the frame.
 struct Settings {
-    Hider hider = Hider::Hidden;
-    uint64_t seed = 0;
+    Hider hider = Hider::Hidden;         ///< the frame's own is looked at by render
+    uint64_t seed = 0;                   ///< of all random numbers
     int lanes = 16;                      ///< 4, 8, 16
     int maxDepth = -1;                   ///< bounces; -1: Option "trace" "maxdepth", else 32 under path and 4 otherwise
     float sampleClamp = 0;               ///< 0 = off (docs/design/slproject.md)
     bool direct = true, indirect = true; ///< --no-direct, --no-indirect: the latter ends diffuse bounces only
     bool unbiased = false;               ///< disables the energy rule
     bool localRoulette = false;          ///< SLProject's rule (--preset slproject) instead of throughput
-    bool roulette = true;
-    bool suspend = false;    ///< suspends kernels also where affine ones exist (tests)
-    bool mixedOnly = false;  ///< uses build V everywhere (tests: same bits as S)
-    bool bsdfOnly = false;   ///< no light sampling, emission counts in full (tests, T6)
-    bool lightOnly = false;  ///< light sampling only: emission hit by lobe rays does not count (tests, T6)
-    bool rowRequests = true; ///< requests of kernels are read in rows where they can be (tests: same bits one by one)
+    bool roulette = true;                ///< paths end at random after some bounces
+    bool suspend = false;                ///< suspends kernels also where affine ones exist (tests)
+    bool mixedOnly = false;              ///< uses build V everywhere (tests: same bits as S)
+    bool bsdfOnly = false;               ///< no light sampling, emission counts in full (tests, T6)
+    bool lightOnly = false;              ///< light sampling only: emission hit by lobe rays does not count (tests, T6)
+    bool rowRequests = true;             ///< requests of kernels are read in rows where they can be (tests: same bits one by one)
     /// hidden, raytrace: camera samples take colours from micropolygons that are shaded once for all samples; false: each sample
     /// is shaded at its own hit.
     bool micropolygons = false;

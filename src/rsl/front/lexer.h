@@ -16,11 +16,11 @@ enum class Tok : uint8_t {
 
 /// A token; its text lives as long as the SourceSet.
 struct Token {
-    Tok kind = Tok::End;
+    Tok kind = Tok::End;    ///< what it is
     bool lineStart = false; ///< first on its line
     bool space = false;     ///< white space before it
     bool noExpand = false;  ///< a macro's name inside its own expansion
-    Place place;
+    Place place;            ///< of its first byte
     std::string_view text;
     /// Whether it is this word or sign; never true for numbers and strings.
     bool is(std::string_view s) const { return text == s && (kind == Tok::Punct || kind == Tok::Identifier); }
@@ -29,6 +29,7 @@ struct Token {
 /// Reads one text from its beginning to its end.
 class Lexer {
 public:
+    /// File: of the SourceSet.
     Lexer(SourceSet&, int file);
     /// Over another text, which must stay alive; places name `file`.
     Lexer(SourceSet&, int file, std::string_view text);

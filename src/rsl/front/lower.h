@@ -11,6 +11,7 @@
 
 namespace alpenglow::rsl::front {
 
+/// Types of statements, and of numbers that the pass makes.
 inline constexpr Type kNone{Base::Void, 0};
 inline constexpr Type kNumber{Base::Float, 0};
 inline constexpr const char* kElement = "element"; ///< Expr::text of an index into members of an array of structures
@@ -32,6 +33,7 @@ void settle(Expr&);
 /// The pass; used once.
 class Lowering {
 public:
+    /// All outlive the pass.
     Lowering(Program& p, SourceSet& s, Checker& c) : program_(p), sources_(s), checker_(c), structures_(p.structs) {}
     /// Lowers the whole program.
     void run();

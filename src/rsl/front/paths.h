@@ -8,19 +8,20 @@ namespace alpenglow::rsl::front {
 
 /// A variable, or members of one. Elements of an array are not distinguished.
 struct Path {
-    const Symbol* symbol = nullptr;
-    Place place;       ///< of the variable's name
-    Type type;         ///< as declared, without the elements that are chosen
-    size_t first = 0;  ///< the first plain member, by its number among members() of the variable
-    size_t count = 1;  ///< plain members; of a structure given for one that it extends, those of the latter
-    size_t named = 1;  ///< plain members of what the text names, at least `count`
-    std::string name;  ///< as the shader writes it, without indices: "s->inner"
-    bool whole = true; ///< no index chooses an element
+    const Symbol* symbol = nullptr; ///< null: no variable
+    Place place;                    ///< of the variable's name
+    Type type;                      ///< as declared, without the elements that are chosen
+    size_t first = 0;               ///< the first plain member, by its number among members() of the variable
+    size_t count = 1;               ///< plain members; of a structure given for one that it extends, those of the latter
+    size_t named = 1;               ///< plain members of what the text names, at least `count`
+    std::string name;               ///< as the shader writes it, without indices: "s->inner"
+    bool whole = true;              ///< no index chooses an element
 };
 
 /// Finds paths by the types of variables alone: expressions around them may have errors and no types.
 class Paths {
 public:
+    /// P: has the structures; outlives this.
     explicit Paths(const Program& p) : structures_(p.structs) {}
     /// The path that the expression is; nothing for other expressions, and for members that are not there.
     std::optional<Path> of(const Expr&) const;

@@ -18,6 +18,7 @@ enum class Growth : uint8_t { None, Identity, Other };
 /// One walk over a kernel in long form. When a step fails the kernel is half changed: run it on a copy of the body.
 class Weights {
 public:
+    /// Both outlive this.
     Weights(Kernel& kernel, const Dependence& dependence) : k(kernel), d(dependence) {}
 
     /// Puts an Emit in place of every Request that reaches `ci` (an Output of Kernel::light, or null for none). The Requests

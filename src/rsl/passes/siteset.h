@@ -7,6 +7,7 @@
 
 namespace alpenglow::rsl::passes {
 
+/// Sets of ordinals of Requests.
 class SiteSet {
 public:
     /// The set of one.

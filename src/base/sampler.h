@@ -22,7 +22,7 @@ inline constexpr uint32_t kReplicas = 2; ///< independent sequences of a pixel (
 
 /// A seed, hashed once for all pixels.
 struct SeedKey {
-    /// Seed: any number.
+    /// seed: any number.
     explicit SeedKey(uint64_t seed) : key(mix64(seed + 0x6a09e667f3bcc909ull)) {}
     uint64_t key; ///< the hashed seed
 };

@@ -13,7 +13,7 @@ double fresnelInside(double cosine, double index);
 /// scattering, by quadrature.
 class AlbedoInversion {
 public:
-    /// Index: of refraction of the inside relative to the outside, > 0.
+    /// index: of refraction of the inside relative to the outside, > 0.
     explicit AlbedoInversion(double index);
     /// Fraction of the entering light that leaves again, for a single-scattering albedo from 0 to 1; error below 1e-5.
     double reflectance(double albedo) const;

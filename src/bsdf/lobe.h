@@ -67,7 +67,7 @@ struct LobeKind {
 /// A single lobe.
 class Bsdf {
 public:
-    /// Kind: of lobeKinds(), outlives the lobe.
+    /// kind: of lobeKinds(), outlives the lobe.
     Bsdf(const LobeKind&, const LobeParams&);
     /// w is unit.
     LobeValue value(const Vec3& w) const;

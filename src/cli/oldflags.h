@@ -9,6 +9,7 @@ namespace alpenglow::cli {
 
 /// One flag of another renderer's command line.
 struct OldFlag {
+    /// What becomes of a flag.
     enum class Use {
         Accepted, ///< becomes `here`
         Dropped,  ///< ignored because it is not needed; `here` has the reason

@@ -18,7 +18,7 @@ namespace alpenglow::geometry {
 /// The shape of the request.
 class Blobby final : public KeyedShape {
 public:
-    /// Leaves: of the request. Cuts the surface into boxes.
+    /// leaves: of the request. Cuts the surface into boxes.
     Blobby(ShapeSource s, BlobField field, int leaves, Diagnostics& diag);
     /// There is no surface.
     bool empty() const { return boxes_.empty(); }

@@ -74,7 +74,7 @@ struct CurveRay {
     Vec3d org;            ///< object space
     double length, shift; ///< of the direction; t of org
     double lo, hi;        ///< t
-    /// Near: a point of the segment; hits are wanted from lo to hi.
+    /// near: a point of the segment; hits are wanted from lo to hi.
     CurveRay(const Vec3d& o, const Vec3d& d, const Vec3d& near, double lo, double hi);
     /// A direction of object space in the axes of the ray.
     Vec3d turned(const Vec3d& v) const { return {dot(v, e1), dot(v, e2), dot(v, e3)}; }

@@ -60,7 +60,7 @@ struct Parametric::Dicing {
     std::vector<Vec2> step;                   ///< by vertex: along u and v to the next ones
     std::vector<uint8_t> used;                ///< by vertex: a block that is seen has it; empty: all are
 
-    /// Displaced: a displacement shader moves its points.
+    /// displaced: a displacement shader moves its points.
     Dicing(const Parametric& shape, const DiceOptions& o, bool displaced);
     /// Numbers of facets of a block, by points inside it; `least`: the smallest number of a probe.
     void probe(const Parametric&, Block&, Block& least, ProbedBox&) const;

@@ -9,7 +9,7 @@ namespace alpenglow::geometry {
 /// A result for every operation of a tape, without memory of its own for the short tapes that nearly all are.
 template <class T> class TapeResults {
 public:
-    /// N: number of operations.
+    /// n: number of operations.
     explicit TapeResults(size_t n) {
         if (n > few_.size()) many_.resize(n);
     }

@@ -27,7 +27,7 @@ struct SeenSample {
 
 /// One for each thread.
 struct Context {
-    /// Diagnostics: receives warnings; outlives the context.
+    /// diagnostics: receives warnings; outlives the context.
     Context(std::shared_ptr<const WorldImpl>, Diagnostics&);
     const std::shared_ptr<const WorldImpl> frame; ///< keeps the world alive
     const WorldImpl& world;                       ///< *frame

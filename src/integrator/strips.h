@@ -20,7 +20,7 @@ struct StripRequest {
 /// A suspended strip. Its request is processed together with those of other strips of its batch (WaitingKernels::follow).
 class KernelStrip final : public Sched::Strip {
 public:
-    /// Handle: of the suspended coroutine; first: point of the batch.
+    /// handle: of the suspended coroutine; first: point of the batch.
     KernelStrip(WaitingKernels&, std::shared_ptr<BatchContext>, void* handle, int first, int depth);
     ~KernelStrip() override;
     int depth() const override { return depth_; }

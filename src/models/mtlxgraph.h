@@ -14,7 +14,7 @@ using MtlxValue = std::vector<std::string>;
 /// Translates the nodes of one file, each once.
 class MtlxGraph {
 public:
-    /// Root: the element materialx. file: for messages. All must outlive the graph.
+    /// root: the element materialx. file: for messages. All must outlive the graph.
     MtlxGraph(const XmlElement& root, const std::string& file, const MaterialxMaps& maps, Diagnostics& d)
         : root_(root), file_(file), maps_(maps), diags_(d) {}
 

@@ -11,7 +11,7 @@ namespace alpenglow::ptex {
 /// A cache in parts, each with its own lock. The parts drop what was used longest ago.
 class Cache {
 public:
-    /// Bytes: most memory of all images together.
+    /// bytes: most memory of all images together.
     explicit Cache(size_t bytes) : most_(bytes) {}
     using Ref = std::shared_ptr<const Image>;             ///< an image stays alive while somebody holds it
     static constexpr uint32_t kWhole = ~0u, kTable = ~1u; ///< for Key::tile: the complete face, or the table of its tiles

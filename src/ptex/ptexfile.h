@@ -65,7 +65,7 @@ struct Head {
 
 /// Faces of any number of files, those that were looked at last; bounded. Thread safe.
 class Cache;
-/// Bytes: most memory of all its faces.
+/// bytes: most memory of all its faces.
 std::shared_ptr<Cache> makeCache(size_t bytes);
 
 /// A file that is open. Thread safe.

@@ -38,7 +38,7 @@ struct Renderer::FrameWork {
     Imager imager;                             ///< of the frame; may be empty
     uint64_t nonFinite = 0;                    ///< samples that were dropped
 
-    /// Figures: receives those of the frame.
+    /// figures: receives those of the frame.
     FrameWork(std::shared_ptr<const scene::Frame> of, FrameStats& figures, Diagnostics& d)
         : frame(std::move(of)), stats(figures), errorsBefore(d.errors()), o(frame->options), hider(hiderOf(o, d)),
           path(hider == Hider::Path), camera(o, d), made(frame) {}

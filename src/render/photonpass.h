@@ -9,7 +9,7 @@ namespace alpenglow::render {
 /// Emits photons on the threads of a job and shows progress.
 class PhotonPasses {
 public:
-    /// Use: which photons, how many.
+    /// use: which photons, how many.
     PhotonPasses(Job&, std::shared_ptr<const world::World>, const integrator::PhotonUse&);
     /// The same with other diagnostics.
     PhotonPasses(Job&, std::shared_ptr<const world::World>, const integrator::PhotonUse&, Diagnostics&);

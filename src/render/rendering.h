@@ -53,7 +53,7 @@ struct Job {
     world::GuideFigures guide;                    ///< of path
     std::atomic<bool> met{false}, shone{false};   ///< some camera ray hit a surface; carried light
 
-    /// Threads: 0 all cores.
+    /// threads: 0 all cores.
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const world::World>, int threads,
         Progress&, Diagnostics&);
     /// Builds the world with procedurals that rays reached (world/procedurals.h), by number; returns null if the user stops, or
@@ -128,7 +128,7 @@ struct Refined {
 /// The camera rays of image samples, many at a time.
 class ImageRays {
 public:
-    /// Nx, ny: samples of a pixel.
+    /// nx, ny: samples of a pixel.
     ImageRays(const Camera&, uint64_t seed, int nx, int ny, Jitter);
     /// Drops requests; memory stays.
     void clear();

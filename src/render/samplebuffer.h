@@ -25,7 +25,7 @@ Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter
 /// Computes the positions of many samples, with the same bits.
 class PlaceRows {
 public:
-    /// Nx, ny: samples of a pixel.
+    /// nx, ny: samples of a pixel.
     PlaceRows(uint64_t seed, int nx, int ny, Jitter jitter) : seed_(seed), nx_(nx), ny_(ny), jitter_(jitter) {}
     /// Drops requests; memory stays.
     void clear();

@@ -7,7 +7,7 @@ namespace alpenglow::ri {
 /// Tokens of a stream, request by request.
 class RibEncoder {
 public:
-    /// To: receives the bytes.
+    /// to: receives the bytes.
     RibEncoder(std::unique_ptr<ByteSink> to) : to_(std::move(to)) {}
     virtual ~RibEncoder() = default;
     /// Whether only the nearest float of a number counts.

@@ -8,7 +8,7 @@ namespace alpenglow::ri {
 /// Reports to a Diagnostics, which must outlive it.
 class Reporter {
 public:
-    /// D: receives the messages.
+    /// d: receives the messages.
     explicit Reporter(Diagnostics& d) : sink_(d) {}
     /// Report one message at a place.
     void report(Severity, Rie, const SourcePlace&, std::string message, std::string hint = {});

@@ -43,7 +43,7 @@ struct FilterRules {
 /// Applies rules to a stream and passes on the result.
 class RequestFilter : public RequestReceiver {
 public:
-    /// To: receives what stays; it must outlive this.
+    /// to: receives what stays; it must outlive this.
     RequestFilter(FilterRules rules, RequestReceiver& to) : rules_(std::move(rules)), to_(to) {}
     void request(const Call&) override;
     void unknown(const std::string& name, const std::vector<Value>& values) override;

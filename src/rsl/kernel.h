@@ -58,7 +58,7 @@ inline constexpr size_t kMemoryAlign = 256;
 /// Memory for the large local arrays of a kernel while it runs.
 struct LocalMemory {
     void* bytes; ///< aligned to kMemoryAlign
-    /// Size: bytes. Throws std::bad_alloc.
+    /// size: bytes. Throws std::bad_alloc.
     explicit LocalMemory(uint64_t size) : bytes(::operator new(size, std::align_val_t(kMemoryAlign))) {}
     ~LocalMemory() { ::operator delete(bytes, std::align_val_t(kMemoryAlign)); }
     LocalMemory(const LocalMemory&) = delete;

@@ -17,7 +17,7 @@ inline constexpr size_t kSpilledArrayBytes = size_t(256) << 20;
 /// The elements of resizable arrays beyond the memory of the kernel, for one run. For one thread.
 class SpilledArrays {
 public:
-    /// Most: bytes of one run; more is an error.
+    /// most: bytes of one run; more is an error.
     explicit SpilledArrays(size_t most = kSpilledArrayBytes) : most_(most) {}
     /// Answers a service on arrays: "arraystore" gives the length that the array has with this element at least, "arrayload" the
     /// element, 0 where there is none; "arrayresize" the length that it gets. A length that there is no memory for is reported

@@ -115,7 +115,7 @@ public:
 
     bool operator==(const LightSet&) const = default;
     auto operator<=>(const LightSet&) const = default;
-    /// List: ascending.
+    /// list: ascending.
     bool operator==(const std::vector<int>& o) const { return std::equal(begin(), end(), o.begin(), o.end()); }
 
 private:

@@ -34,7 +34,7 @@ inline Vec3 normalTo(const Matrix& m, const Vec3& n) { return unitOr0(Vec3(trans
 /// `straight`: to a space with the angles of "current", if the file's differ (pointcloud/shear.h).
 class CloudSpace {
 public:
-    /// Row: of the argument that names the space, or -1.
+    /// row: of the argument that names the space, or -1.
     CloudSpace(Services& answers, const ServiceCall& call, const std::string& name, int row, bool straight = false)
         : services_(answers), call_(call), name_(name), row_(row), same_(row < 0 && name != "object" && name != "shader"),
           straight_(straight) {}

@@ -10,7 +10,7 @@ namespace alpenglow::services {
 /// 0; then follow the values, by component, then element. For a resizable array its length comes before them.
 class ServiceCall {
 public:
-    /// First, mask: the strip begins at that point of the batch; lanes whose bits are set are active. in, out: rows.
+    /// first, mask: the strip begins at that point of the batch; lanes whose bits are set are active. in, out: rows.
     ServiceCall(KernelRun&, Diagnostics&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     /// Calls body(lane, point) for the lanes of the mask that have a point.
     template <class Body> void each(Body&& body) const {

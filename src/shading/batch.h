@@ -48,7 +48,7 @@ struct InstanceView {
 /// Sources of a kernel's inputs and positions of its rows: computed once for each kernel.
 class BatchPlan {
 public:
-    /// Mixed: points of one batch may belong to several instances.
+    /// mixed: points of one batch may belong to several instances.
     explicit BatchPlan(const rsl::CompiledKernel&, bool mixed);
     /// Index of an output, or -1.
     int output(const rsl::OutputName&) const;

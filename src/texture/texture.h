@@ -166,7 +166,7 @@ struct TextureSettings {
 /// The maps of a render. Thread safe.
 class TextureSystem {
 public:
-    /// Settings: limits of memory, search paths.
+    /// settings: limits of memory, search paths.
     explicit TextureSystem(Diagnostics&, TextureSettings = {});
     ~TextureSystem();
     /// Opens the map called name along a search path (base/file.h findFile: also by other case, backslashes, or base name, which

@@ -83,7 +83,7 @@ class TerminalPreview final : public Preview {
 public:
     /// Receives text for the terminal.
     using Sink = std::function<void(const std::string&)>;
-    /// Sink: writes to the terminal, in the thread that renders.
+    /// sink: writes to the terminal, in the thread that renders.
     TerminalPreview(Diagnostics& d, TerminalKind k, TerminalSize s, Sink sink)
         : Preview(d), kind_(k), size_(s), sink_(std::move(sink)) {}
     /// Other output was printed: the next picture is drawn below it.

@@ -8,7 +8,7 @@ namespace alpenglow::view {
 /// Answers requests with the token that come to this port under a name of this machine; rejects all others.
 class ViewServer {
 public:
-    /// Token: the secret that each request must have. Session and server must outlive this.
+    /// token: the secret that each request must have. Session and server must outlive this.
     ViewServer(Session&, HttpServer&, std::string token);
     /// HttpServer::Handler.
     std::optional<HttpResponse> answer(const HttpRequest&, bool last, bool* known);

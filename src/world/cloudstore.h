@@ -15,7 +15,7 @@ struct BoundLight;
 /// The maps of one world. Lookups and baking are thread safe; setting up and writing are not.
 class CloudStore {
 public:
-    /// Files: where names are looked up.
+    /// files: where names are looked up.
     CloudStore(MapFiles files, Diagnostics& d) : files_(std::move(files)), diagnostics_(d) {}
     /// The map of this name, read at first use. Returns null if it does not exist, which is reported once. Thread safe; the map
     /// lives as long as the store.

@@ -41,7 +41,7 @@ struct Given {
 /// Lanes of a block that prepare() may write.
 struct Rows : Given {
     float* to; ///< row 0 of the lanes
-    /// P: row 0 of the lanes, in a block.
+    /// p: row 0 of the lanes, in a block.
     AL_MEMBER explicit Rows(float* p) : Given{p}, to(p) {}
     /// Write one row, or three from this one on, for all lanes; own(): rows of the kind.
     AL_MEMBER void set(int row, vf x) const { storeLanes(to + row * kStride, x); }

@@ -13,7 +13,7 @@ namespace alpenglow::display {
 /// Bytes in memory as OpenEXR reads them.
 class MemoryStream : public Imf::IStream {
 public:
-    /// Name: for messages of OpenEXR. The bytes must outlive the stream.
+    /// name: for messages of OpenEXR. The bytes must outlive the stream.
     MemoryStream(Bytes b, const std::string& name) : Imf::IStream(name.c_str()), bytes_(b) {}
     bool read(char c[], int n) override {
         if (n < 0 || at_ > bytes_.size() || bytes_.size() - at_ < size_t(n)) throw Iex::InputExc("it is truncated");

@@ -11,7 +11,7 @@ namespace alpenglow::models {
 /// Takes a scene of assimp over into a Model.
 class AssimpReader {
 public:
-    /// Path: of the file, whose folder has the pictures. Scene and model must outlive the reader.
+    /// path: of the file, whose folder has the pictures. Scene and model must outlive the reader.
     AssimpReader(const aiScene& s, std::string path, Model& out) : scene_(s), path_(std::move(path)), out_(out) {}
     /// Fills the model; what cannot be taken over becomes a note.
     void all();

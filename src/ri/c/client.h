@@ -76,7 +76,7 @@ struct Pairs {
 /// it; without a client RIE_NOTSTARTED is reported.
 class Building : Boundary {
 public:
-    /// Request: its name in the table.
+    /// request: its name in the table.
     explicit Building(const char* request);
     /// Append an argument each: a number or text bare, arrays with their n values.
     Building& number(double);

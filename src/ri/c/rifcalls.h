@@ -43,7 +43,7 @@ inline RtFilterFunc filterOf(const std::string& name) {
 /// The arguments of a request, read one by one as C has them. Counts of arrays, which RIB leaves out, follow from these.
 class RifArguments {
 public:
-    /// Handle: the object of C for a handle of RIB. The call must outlive this.
+    /// handle: the object of C for a handle of RIB. The call must outlive this.
     RifArguments(const Call& c, const Declarations& d, std::function<RtPointer(const std::string&)> handle)
         : call_(c), declarations_(d), handle_(std::move(handle)) {
         const std::vector<ArgSpec>& specs = c.request->args;

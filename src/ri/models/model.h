@@ -20,7 +20,7 @@ namespace alpenglow::ri {
 class ModelLog {
 public:
     using Sink = std::function<void(Severity, Rie, const SourcePlace&, std::string)>; ///< receives each message
-    /// S: called in the thread that reports.
+    /// s: called in the thread that reports.
     explicit ModelLog(Sink s) : sink_(std::move(s)) {}
     ~ModelLog();
     /// Report a fault of the file, or count it.

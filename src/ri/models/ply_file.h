@@ -40,7 +40,7 @@ struct PlyRow {
 /// Reads the header, then row by row, in the order of the file. The log reports what is wrong.
 class PlyFile {
 public:
-    /// Path: for messages. The bytes must outlive this.
+    /// path: for messages. The bytes must outlive this.
     PlyFile(const std::string& path, std::string_view bytes, ModelLog& log) : path_(path), bytes_(bytes), log_(log) {}
     /// Reads the header. False after an error.
     bool header();

@@ -29,7 +29,7 @@ struct Token {
 /// Reads one text from its beginning to its end.
 class Lexer {
 public:
-    /// File: of the SourceSet.
+    /// file: of the SourceSet.
     Lexer(SourceSet&, int file);
     /// Over another text, which must stay alive; places name `file`.
     Lexer(SourceSet&, int file, std::string_view text);

@@ -41,7 +41,7 @@ struct Unit {
 /// Builds the syntax tree of a unit from one or more texts.
 class Parser {
 public:
-    /// S: receives the texts.
+    /// s: receives the texts.
     explicit Parser(SourceSet& s) : sources_(s) {}
     /// Reads one more text into the unit; it sees the structures of those before. Never fails: errors are in the set, and what
     /// could be read is in the unit.

@@ -21,7 +21,7 @@ struct Path {
 /// Finds paths by the types of variables alone: expressions around them may have errors and no types.
 class Paths {
 public:
-    /// P: has the structures; outlives this.
+    /// p: has the structures; outlives this.
     explicit Paths(const Program& p) : structures_(p.structs) {}
     /// The path that the expression is; nothing for other expressions, and for members that are not there.
     std::optional<Path> of(const Expr&) const;

@@ -41,7 +41,7 @@ public:
     /// Both outlive this.
     Preprocessor(SourceSet& s, const FrontOptions& o) : sources_(s), options_(o) {}
 
-    /// Main: a file of the SourceSet.
+    /// main: a file of the SourceSet.
     Preprocessed run(int main) {
         pushFile(main);
         std::string predefined = "#define ALPENGLOW 1\n";

@@ -225,8 +225,8 @@ struct LightHandle {
     static std::optional<LightHandle> parse(std::string_view);
     std::string text() const;
 };
-/// What "%h" and messages call a handle: lights and co-shaders by the handle of their declaration, no shader "<null>" (seed,
-/// format()).
+/// What "%h" of format() and messages call a handle: lights and co-shaders by the handle of their declaration, no shader
+/// "<null>".
 std::string shownHandle(const std::string& handle);
 
 } // namespace alpenglow::rsl

@@ -34,7 +34,7 @@ inline std::string indexText(float x) { return fmt::format("{:.9g}", std::trunc(
 /// From the checked tree of one shader to the IR of one kernel; used once.
 class Builder final : FunctionBuilder {
 public:
-    /// K: receives the code, empty before. direct: calls that stay direct.
+    /// k: receives the code, empty before. direct: calls that stay direct.
     Builder(Kernel& k, const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d, const DirectSet& direct)
         : FunctionBuilder(k, p.files, o, d), program_(p), shader_(s), direct_(direct) {}
     /// Builds the kernel of the shader. False after an error, which is reported.

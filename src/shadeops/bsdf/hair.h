@@ -59,7 +59,7 @@ template <class T> AL_INLINE T besselScaled(const T& x) {
 template <class T> struct HairBell {
     T perWidth, low, scale; ///< 1 / width; logistic at -PI; 1 over what lies within +-PI
     HairBell() = default;
-    /// Width: scale of the bell, radians, > 0.
+    /// width: scale of the bell, radians, > 0.
     AL_MEMBER explicit HairBell(const T& width) : perWidth(divide(T(vf(1)), width)) {
         low = logistic(perWidth * vf(-kPi));
         scale = divide(T(vf(1)), vf(1) - low * vf(2));

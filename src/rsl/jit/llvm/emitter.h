@@ -40,7 +40,7 @@ struct ArrayStorage {
 /// Writes the functions of one kernel into an LLVM module; used once.
 class Emitter {
 public:
-    /// Runtime: bitcode of the shadeops; width: lanes of a vector.
+    /// runtime: bitcode of the shadeops; width: lanes of a vector.
     Emitter(const ModuleRequest&, const Shapes&, int width, llvm::Module&, llvm::Module& runtime);
     /// The function of a kernel that does not suspend: a loop over strips.
     void emitLoopKernel();

@@ -32,7 +32,7 @@ struct Shape {
 /// Inst::order.
 class Shapes {
 public:
-    /// Mixed: inputs of instances vary. zeroDerivative: symbols of the runtime whose derivatives are zero; may be null.
+    /// mixed: inputs of instances vary. zeroDerivative: symbols of the runtime whose derivatives are zero; may be null.
     Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative);
     /// Of the body of a Function whose arguments have these shapes.
     const Shapes& function(const ir::Inst*, const std::vector<Shape>& arguments) const;

@@ -27,11 +27,12 @@ struct SeenSample {
 
 /// One for each thread.
 struct Context {
-    /// diagnostics: receives warnings; outlives the context.
-    Context(std::shared_ptr<const WorldImpl>, Diagnostics&);
+    /// diagnostics: receives warnings; outlives the context. building: as MakeEvaluator.
+    Context(std::shared_ptr<const WorldImpl>, Diagnostics&, bool building);
     const std::shared_ptr<const WorldImpl> frame; ///< keeps the world alive
     const WorldImpl& world;                       ///< *frame
     Diagnostics& diagnostics;                     ///< thread safe
+    const bool building;                          ///< the world is not complete: what services answer may change
     const SeedKey seed;                           ///< of all random numbers
     const int32_t totalReflection;                ///< the label of rays that Counters::totalReflected counts
     Rules rules;                                  ///< of the hider

@@ -36,6 +36,8 @@ public:
 
 private:
     void runWaiting(BatchContext&); ///< runs a kernel that waits for rays, strip by strip
+    /// Counts a run for the light, or for all of a LightGroup (LightCall::of).
+    void countRuns(const BoundLight&, std::span<const BoundLight* const> group);
     /// Adds the requests of a light's kernel other than Cl: shadows. The queries are not in the batch.
     void addPairs(BatchContext&, std::vector<ShadePoint>& queries, std::span<LightValue>);
     /// Result of a transmission() or trace() of a light's kernel at a point that it lights; the ray is traced to the end at once.

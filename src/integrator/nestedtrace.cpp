@@ -25,7 +25,7 @@ void NestedTrace::forget() { inner_.reset(); }
 
 const StageSet& NestedTrace::begin() {
     if (!inner_) {
-        inner_ = std::make_unique<Pipeline>(context_.frame, diagnostics_);
+        inner_ = std::make_unique<Pipeline>(context_.frame, diagnostics_, context_.building);
         for (SegmentEvent* e : segmentEvents_.events)
             if (e != &mediumEvents_) inner_->stages().segmentEvents.happens(*e); // it has its own
         inner_->stages().context.raysAtOnce = std::min(context_.raysAtOnce, int(Sched::kStripRays));

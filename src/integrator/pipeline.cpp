@@ -47,7 +47,7 @@ namespace alpenglow::integrator {
 
 /// The stages, connected by `set`. Each is made after the stages that its constructor uses.
 struct Pipeline::Parts {
-    Parts(std::shared_ptr<const WorldImpl>, Diagnostics&);
+    Parts(std::shared_ptr<const WorldImpl>, Diagnostics&, bool building);
     Context context;
     StageSet set;
     RayStore store;
@@ -88,8 +88,8 @@ struct Pipeline::Parts {
     LastSkies lastSkies;
 };
 
-Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
-    : context(std::move(w), d),
+Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d, bool building)
+    : context(std::move(w), d, building),
       set{context,      store,         paths,        accumulator,  intersector,    queues,       surfaces,  segmentEvents,
           emitted,      litSurfaces,   transparency, lightKernels, nested,         mediumEvents, occlusion, records,
           gathers,      guide,         shadows,      opacities,    media,          atmosphere,   batches,   inputs,
@@ -105,7 +105,8 @@ Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
     if (std::any_of(world.media().begin(), world.media().end(), event)) segmentEvents.happens(mediumEvents);
 }
 
-Pipeline::Pipeline(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : parts_(std::make_unique<Parts>(std::move(w), d)) {}
+Pipeline::Pipeline(std::shared_ptr<const WorldImpl> w, Diagnostics& d, bool building)
+    : parts_(std::make_unique<Parts>(std::move(w), d, building)) {}
 
 Pipeline::~Pipeline() { // strips of an abandoned frame need their kernels
     parts_->nested.forget();

@@ -11,8 +11,8 @@ namespace alpenglow::integrator {
 /// All stages of one thread.
 class Pipeline final : public shading::Sched::RayService {
 public:
-    /// Of World::build(); diagnostics outlive this.
-    Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&);
+    /// diagnostics outlive this. building: as MakeEvaluator; else the world is of World::build().
+    Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&, bool building = false);
     ~Pipeline() override;
     /// Traces camera rays to the end. Results do not depend on which rays share a call. Returns false if `stop` was set; `out` is
     /// then undefined.

@@ -43,7 +43,9 @@ struct Counters {
     size_t peakFrameBytes = 0;                    ///< largest size of suspended kernel frames at one time, over all threads
     size_t threadBytes = 0;                       ///< most memory of rays, points, columns and frames of one thread
     std::vector<MediumSegments> media;            ///< by WorldImpl::media(); may be shorter
-    void operator+=(const Counters&);             ///< Adds sums; keeps the larger of maxima.
+    /// By WorldImpl::lights(), may be shorter: runs of the light's kernel. Counted only if a shader of the world bakes.
+    std::vector<uint64_t> lightRuns;
+    void operator+=(const Counters&); ///< Adds sums; keeps the larger of maxima.
 };
 
 /// A camera ray: raster position and sample number. Camera space.

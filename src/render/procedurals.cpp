@@ -43,7 +43,7 @@ bool Renderer::buildFrame(FrameWork& f) {
 
 void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
     if (!makeProcedurals_) return;
-    job.make = [&f, this](std::span<const int> met) -> std::shared_ptr<const world::World> {
+    job.make = [&f, this](std::span<const int> met, int most) -> std::shared_ptr<const world::World> {
         if (!f.later) {
             auto said = std::make_shared<std::set<std::string>>();
             for (const Diagnostic& d : diagnostics_.all()) said->insert(toString(d));
@@ -56,7 +56,9 @@ void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
         if (!made) return nullptr;
         stats_.parseSec += clockSeconds() - begun;
         f.made = std::move(made);
-        std::shared_ptr<const world::World> next = engine_.build(drawnLevels(f.made, f.camera), f.settings, *f.later);
+        world::Settings settings = f.settings;
+        settings.deferredAtOnce = most;
+        std::shared_ptr<const world::World> next = engine_.build(drawnLevels(f.made, f.camera), settings, *f.later);
         if (!next) return nullptr;
         stats_.buildSec += next->facts().buildSec;
         stats_.compileSec += next->facts().compileSec;

@@ -58,7 +58,7 @@ struct Job {
         Progress&, Diagnostics&);
     /// Builds the world with procedurals that rays reached (world/procedurals.h), by number; returns null if the user stops, or
     /// after an error (reported). Unset: no deferred procedurals.
-    std::function<std::shared_ptr<const world::World>(std::span<const int>)> make;
+    std::function<std::shared_ptr<const world::World>(std::span<const int>, int most)> make;
     /// Runs tasks 0 to count - 1 like Team::run(). Tasks whose rays reached deferred procedurals are repeated after expansion, so
     /// the results of a task must be those of its last run.
     bool run(size_t count, const std::function<void(int, size_t)>& work, const std::function<void(size_t)>& tick);

@@ -65,7 +65,7 @@ void answerOption(Services& answers, const ServiceCall& call) {
     const WorldImpl& world = answers.world();
     call.each([&](int lane, const ShadePoint&) {
         const auto [known, fresh] = answers.memo().options.try_emplace(call.nameId(lane));
-        if (fresh || !world.built()) {
+        if (fresh || answers.building()) {
             const auto i = optionOf(world, rsl::internedString(call.nameId(lane)));
             known->second = i ? std::optional<ShaderValue>(ShaderValue(*i)) : std::nullopt;
         }

@@ -2,8 +2,9 @@
 
 namespace alpenglow::services {
 
-Services::Services(const WorldImpl& world, Diagnostics& d, Tracer* tracer)
-    : world_(&world), diagnostics_(d), tracer_(tracer), seed_(world.settings().seed), noSample_(Sampler(seed_, 0, 0), 0) {}
+Services::Services(const WorldImpl& world, Diagnostics& d, Tracer* tracer, bool building)
+    : world_(&world), diagnostics_(d), tracer_(tracer), building_(building), seed_(world.settings().seed),
+      noSample_(Sampler(seed_, 0, 0), 0) {}
 
 void KernelRun::forget() {
     bound = nullptr;

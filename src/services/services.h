@@ -54,8 +54,9 @@ struct ServiceMemo {
 /// The services of one thread, with its caches.
 class Services {
 public:
-    /// `tracer`: null if there are no lights.
-    Services(const WorldImpl&, Diagnostics&, Tracer* tracer);
+    /// `tracer`: null if there are no lights. building: the world is not complete, so answers that may change are not kept, and
+    /// there are no photon maps yet.
+    Services(const WorldImpl&, Diagnostics&, Tracer* tracer, bool building = false);
     /// Answers a call of any kind except requests for light. Rows are those of rsl::ServiceFn.
     void service(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     // illuminance loops, as in rsl::KernelCall (lightloop.cpp).
@@ -81,6 +82,8 @@ public:
 
     // Shared by services in other files.
     const WorldImpl& world() const { return *world_; }
+    /// Whether the world is not complete.
+    bool building() const { return building_; }
     /// The cache for answers in other files.
     ServiceMemo& memo() { return memo_; }
     /// The state of the loops of a strip, which begins at this point.
@@ -222,6 +225,7 @@ private:
     const WorldImpl* world_;
     Diagnostics& diagnostics_;
     Tracer* tracer_;
+    const bool building_;
     SeedKey seed_;
     SampleNumbers noSample_; ///< for points without a camera sample
     ServiceMemo memo_;

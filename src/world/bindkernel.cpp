@@ -365,6 +365,20 @@ static void bindRows(SiteInfo& i, const rsl::ir::Site& s) {
                  result("unshadowedarealight")};
 }
 
+static KernelNeeds needsOf(const BoundKernel& b) {
+    KernelNeeds n;
+    n.footprints = b.plan->usesFootprint();
+    for (const SiteInfo& i : b.sites) {
+        n.footprints |= i.rays && i.rays->base >= 0; // "samplebase" is a fraction of the footprint
+        n.hitModes |= i.rays && (i.rays->set.mode != shading::HitMode::Default || i.rays->mode >= 0);
+        n.records |= (i.trace && i.trace->records.call) || (i.occlusion && i.occlusion->records.call);
+        n.globalPhotons |= i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere);
+        n.facePlaces |= i.service && (i.service->traits & kReadsFacePlaces);
+        if (i.cloud && i.cloud->writes) n.bakes = true, n.bakesCentres |= i.cloud->centres >= 0;
+    }
+    return n;
+}
+
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, const WorldImpl& world) {
     BoundKernel b;
     b.path = path;
@@ -395,8 +409,6 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
         bindSent(i);
         if (i.service && i.service->bind) i.service->bind(i, *k, world);
-        b.needs.globalPhotons |= i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere);
-        b.needs.facePlaces |= i.service && (i.service->traits & kReadsFacePlaces);
         bindLobe(i);
         i.exponent = s.op == "specularstd" || world.rispecSpecular() ? shadeops::kRispecExponent : shadeops::kSpecularExponent;
         auto rowOf = [&](const char* name) {
@@ -435,12 +447,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
     }
     linkGathers(b, *k, world);
     b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
-    b.needs.footprints = b.plan->usesFootprint();
-    for (const SiteInfo& i : b.sites) {
-        b.needs.footprints |= i.rays && i.rays->base >= 0; // "samplebase" is a fraction of the footprint
-        b.needs.hitModes |= i.rays && (i.rays->set.mode != shading::HitMode::Default || i.rays->mode >= 0);
-        b.needs.records |= (i.trace && i.trace->records.call) || (i.occlusion && i.occlusion->records.call);
-    }
+    b.needs = needsOf(b);
     b.kernel = std::move(k);
     b.blocks = asksBlocks(b);
     return b;

@@ -5,14 +5,11 @@
 #include "pointcloud/octree.h"
 #include "pointcloud/shear.h"
 #include "world/mapfiles.h"
-#include <set>
-#include <span>
 
 namespace alpenglow::world {
 
-struct BoundLight;
-
-/// The maps of one world. Lookups and baking are thread safe; setting up and writing are not.
+/// The maps of one world. Lookups and baking are thread safe; writing is not. What running kernels leave in it (bakes, notes of
+/// lookups) is read between passes only, so no picture depends on it; maps are the same whoever opens them.
 class CloudStore {
 public:
     /// files: where names are looked up.
@@ -32,13 +29,6 @@ public:
     std::vector<std::pair<std::string, SourcePlace>> foundNothing();
 
     pointcloud::BakeLog baked; ///< records of this frame
-    /// Set while the world is built: a surface kernel bakes; one of its calls may request micropolygon centres.
-    bool bakes = false, centres = false;
-    /// Whether to record which lights run: a few points decide whether a primitive bakes, but only for lights that ran there.
-    bool notesLights = false;
-    /// Adds to lightsRan: one light, or all of a LightGroup.
-    void noteLights(const BoundLight& first, std::span<const BoundLight* const> all);
-    std::set<const BoundLight*> lightsRan;
 
 private:
     std::optional<std::string> pathOf(const std::string& name, const SourcePlace&);

@@ -28,7 +28,7 @@ public:
     const uint8_t* find(const class WorldImpl&, const std::string& wanted, const std::string& unwanted) const;
 
 private:
-    mutable std::mutex mutex_;
+    mutable std::mutex mutex_; ///< guards kept_, a cache: a set is the same whoever asks first
     mutable std::map<std::string, std::vector<uint8_t>> kept_;
 };
 
@@ -205,8 +205,7 @@ public:
 
     // Services
     ServiceTable services() const { return services_; }
-    bool rispecSpecular() const { return rispecSpecular_; } ///< specular() uses RISpec's exponent (shadeops/specular.h)
-    bool built() const { return built_; } ///< false while kernels run for the build itself: what they find is not kept
+    bool rispecSpecular() const { return rispecSpecular_; }    ///< specular() uses RISpec's exponent (shadeops/specular.h)
     Diagnostics& diagnostics() const { return *diagnostics_; } ///< of the build; thread safe
     /// Thread safe, so that const users may fill the caches in them.
     texture::TextureSystem& textures() const { return *textures_; }
@@ -229,7 +228,6 @@ protected:
     Settings settings_;
     ServiceTable services_; ///< of services/, above this folder
     bool rispecSpecular_ = false;
-    bool built_ = false;
     Facts facts_;
     Diagnostics* diagnostics_ = nullptr;
 

@@ -124,7 +124,6 @@ public:
     using WorldImpl::allSampled_;
     using WorldImpl::bindingOf_;
     using WorldImpl::bindings_;
-    using WorldImpl::built_;
     using WorldImpl::byOpacity_;
     using WorldImpl::cameraToWorld_;
     using WorldImpl::clipFar_;

@@ -40,6 +40,7 @@ struct Settings {
     bool evenLights = false; ///< many lights: all have the same probability (tests, measurements)
     /// Total size of the lists of lights that surfaces have of their own; surfaces behind these share one list (tests: 0).
     size_t listedLights = 4'000'000;
+    int deferredAtOnce = 1; ///< deferred procedurals along its way that a ray asks for, nearest first (deferred.h)
     MediumSampling mediumSampling = MediumSampling::Both;
     std::vector<std::string> shaderPaths, texturePaths;
     ReadPolicy read{};                    ///< restricts where map names may lead

@@ -391,7 +391,9 @@ BoundKernel MutableWorld::kernelWithoutRays(const ShaderInstance& i, const std::
     ++facts_.kernels;
     facts_.cacheHits += k->fromCache();
     (k->facts().suspends ? facts_.suspending : facts_.affine)++;
-    return bindKernel(std::move(k), mixed, path, *this);
+    BoundKernel bound = bindKernel(std::move(k), mixed, path, *this);
+    needs_.bakes |= bound.needs.bakes, needs_.bakesCentres |= bound.needs.bakesCentres; // an imager may bake, too
+    return bound;
 }
 
 } // namespace alpenglow::world

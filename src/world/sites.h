@@ -122,6 +122,7 @@ struct TextureSite {
     template <class Place> texture::Handle map(const class WorldImpl&, Place&& place) const;
 
 private:
+    // A cache of map(): whichever thread opens the map, the handle is the same.
     mutable std::atomic<texture::Handle> map_{nullptr};
     mutable std::atomic<bool> opened_{false};
 };
@@ -247,10 +248,13 @@ struct KernelNeeds {
     bool hitModes = false;      ///< some call has a "hitmode"
     bool globalPhotons = false; ///< an indirectdiffuse() may use a global photon map
     bool facePlaces = false;    ///< positions on faces are read
+    bool bakes = false;         ///< bake() or bake3d() writes
+    bool bakesCentres = false;  ///< one of these may request the centres of micropolygons
     /// Joins both.
     KernelNeeds& operator|=(const KernelNeeds& o) {
         records |= o.records, footprints |= o.footprints, hitModes |= o.hitModes;
         globalPhotons |= o.globalPhotons, facePlaces |= o.facePlaces;
+        bakes |= o.bakes, bakesCentres |= o.bakesCentres;
         return *this;
     }
 };

@@ -13,8 +13,9 @@ class Evaluator;
 class PhotonStore;
 struct Service;
 /// Makes an Evaluator (evaluator.h) that runs kernels of a world before rays are traced. Several may run at once; the world
-/// outlives them.
-using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop)>;
+/// outlives them. building: the world is not complete, so what services answer may change and is not kept.
+using MakeEvaluator =
+    std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop, bool building)>;
 
 /// A frame ready for tracing: shapes diced, acceleration structure built, shaders compiled, lights bound. Immutable; shared by
 /// threads.

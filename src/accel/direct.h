@@ -26,7 +26,7 @@ public:
     size_t size() const { return size_; }
     /// Triangle i, 0 <= i < size(), in the order of add().
     const Triangle& operator[](size_t i) const { return triangles_[i]; }
-    void tell(DirectScene&) const; ///< copies all of them, for block searches (accel/directblock.h)
+    void copyTo(DirectScene&) const; ///< copies all of them, for block searches (accel/directblock.h)
 
     /// Lower bound of t for the hit on triangle i, in lengths of dir; valid for `candidates`.
     static constexpr size_t kWidest = 16, kRoom = (kMost + kWidest - 1) / kWidest * kWidest;

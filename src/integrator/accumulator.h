@@ -33,12 +33,12 @@ public:
     }
 
     std::unordered_map<AccumulatorId, TraceSums> traceSums; ///< of targets of a trace() that asks for sums
-    std::vector<Share> shares;                              ///< parts of light for outputs; RayExtra::share is an index in it
+    std::vector<AovSplit> aovSplits;                        ///< parts of light for outputs; RayExtra::share is an index in it
     std::vector<SampleResult*> results;                     ///< by camera sample
     std::vector<AccumulatorId> lightTargets;                ///< by camera sample: WorldImpl::lightOutputs_
     std::vector<AccumulatorId> partTargets;                 ///< by camera sample and part of the light path outputs
     AccumulatorId nowhere = shading::kNoAccumulator;        ///< a target that no one reads
-    std::vector<int> spoiled;                               ///< PathSample::path of samples to discard; may hold duplicates
+    std::vector<int> invalidSamples;                        ///< PathSample::path of samples to discard; may hold duplicates
 
 private:
     void contributePart(Sched&, const PathRay*, uint16_t end, const Color& light);

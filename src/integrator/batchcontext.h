@@ -40,7 +40,7 @@ struct BatchContext : KernelRun {
     ~BatchContext();
     KernelInputs* host = nullptr;       ///< answers the calls of the kernel
     RayStore* extrasOf = nullptr;       ///< not null: frees the RayExtra of the batch's rays in its destructor
-    std::vector<AccumulatorId> targets; ///< by point; a batch for light outputs (aside) has its own
+    std::vector<AccumulatorId> targets; ///< by point; a batch for light outputs has its own
     std::vector<accel::Hit> hits;       ///< by point, for rays that hit surfaces
     /// By point, for a batch in rows (rowshading.h), whose `points` stay empty until a stage needs them; undefined otherwise.
     std::vector<geometry::SurfacePoint> surfaces;

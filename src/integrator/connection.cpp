@@ -97,7 +97,7 @@ void Connection::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
     const BoundLight* lights[kBlock];
     std::fill_n(lights, kBlock, &of);
     LightBlock& l = v_.lights[b];
-    l.parted = c.between; // lightSampling_.takeParts()
+    l.hasPart = c.between; // lightSampling_.takeParts()
     stages_.aim(v_.vertices[b], l, v_.shadow);
     std::fill_n(v_.sent, kBlock, -1);
     const Lanes placed = l.asked;

@@ -42,7 +42,7 @@ public:
     /// The parameters of a light that the ray meets, with the numbers that it sends; false: it sends none to this light.
     static bool lightParameters(const GatherSent&, const ShaderInstance& light, shading::ParameterBlock&);
     /// Writes the shader results at a hit to the gather() whose ray found it; `point`: in a batch that has run.
-    void tellGather(const BatchContext&, int point, GatherSent&);
+    void answerGather(const BatchContext&, int point, GatherSent&);
 
     std::unordered_map<AccumulatorId, GatherSent*> gathered; ///< rays of gathers that need shaders, by target
 

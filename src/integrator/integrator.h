@@ -63,7 +63,7 @@ public:
     /// no thread emits.
     void learn(std::span<const StoredPhoton>, uint32_t pass, uint32_t emitted);
     /// Marks the lights that emit here as those whose light the photon passes carry.
-    void tellLights() const;
+    void markPhotonLights() const;
 
     /// The emitter of one thread.
     class Thread {

@@ -16,7 +16,7 @@ inline bool takesPair(const BoundLight& l, bool path) { return l.kind == LightKi
 inline bool takesChoice(const BoundLight& l) { return l.kind == LightKind::Area && l.emitter->chooses(); }
 
 /// Copies the inputs of the light's kernel from the lit point (Ps, Ns, I, E, du, dv, time) to a query. Current space.
-void tellLit(ShadePoint& query, const ShadePoint& lit);
+void takeLitPoint(ShadePoint& query, const ShadePoint& lit);
 /// The origin of the light's shader space in current space: P of a light without geometry. shutter: 0 to 1.
 Vec3 originOfLight(const ShaderInstance&, float shutter);
 /// The guide of a light's samples at surfaces under path; null: none.
@@ -35,8 +35,8 @@ struct GuidedLanes {
     /// x of the points' numbers as in GuidedDraw.
     GuidedLanes(const LightGuide*, const VertexBlock&, Lanes points, float* x);
 };
-/// Samples the point on the light for a query filled by tellLit(). guide: null: by the light's own density. Returns false if the
-/// sample carries no light.
+/// Samples the point on the light for a query filled by takeLitPoint(). guide: null: by the light's own density. Returns false if
+/// the sample carries no light.
 bool placeLightSample(const WorldImpl&, const BoundLight&, const LightGuide* guide, const LightNumbers&, bool path,
                       ShadePoint& query, Emitter::Sample&);
 

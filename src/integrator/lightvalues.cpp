@@ -11,7 +11,7 @@
 namespace alpenglow::integrator {
 
 /// A vertex gives one answer to lights that query its surface: that of its first lobe.
-void LightSampling::tellLights(const BatchContext& c) {
+void LightSampling::recordLitSurfaces(const BatchContext& c) {
     v_.litSurface.assign(v_.points, -1);
     std::vector<LitValues>& all = litSurfaces_.values;
     for (size_t k = 0; k < v_.count; ++k) {
@@ -56,7 +56,7 @@ void LightSampling::askQueries(const BoundLight& light, const BoundKernel* group
         call.lit = &lit;
     }
     std::vector<char> inMedium;
-    if (light.hazy && !world_.media().empty()) {
+    if (light.inAtmosphere && !world_.media().empty()) {
         for (const BlockQuery& a : v_.asked)
             inMedium.push_back(MediaStacks::mediumOf(media_.towards(c, a.point, a.sample.direction)) >= 0);
         call.inMedium = &inMedium;

@@ -23,7 +23,7 @@ public:
     /// Selects lights for light-directed sampling, and the lobes that use it (lightdirections.cpp).
     void lightDirections(const BatchContext&);
     /// Warns once per shader that its indirect light is scaled down. more: its reflectance alone exceeds 1.
-    void tellScaled(const SurfaceBinding&, bool more);
+    void reportScaled(const SurfaceBinding&, bool more);
 
 private:
     /// Shaders already reported: reflectance over 1; reflectance plus transparency over 1.

@@ -13,7 +13,7 @@ MediaStacks::MediaStacks(const StageSet& s) : Stage(s.context), atmosphere_(s.at
 
 using shading::Media;
 
-void MediaStacks::tellLost(const Media* m, const ShadePoint& p) const {
+void MediaStacks::reportLost(const Media* m, const ShadePoint& p) const {
     if (m && m->lost)
         diagnostics_.reportOnce(
             "media", {Severity::Warning,
@@ -42,7 +42,7 @@ const Media* MediaStacks::towards(const KernelRun& c, int point, const Vec3& w) 
     if (c.between) return ray.media;
     const ShadePoint& p = c.points[size_t(point)];
     const Media* m = beyond(world_.bindings()[size_t(c.bindings[size_t(point)])], ray.media, p.surface.n, ray.dir, w);
-    tellLost(m, p);
+    reportLost(m, p);
     return m;
 }
 

@@ -27,8 +27,9 @@ public:
     /// SurfaceBinding::beyond().
     const shading::Media* beyond(const SurfaceBinding&, const shading::Media* from, const Vec3& n, const Vec3& in,
                                  const Vec3& to);
-    const shading::Media* kept(const shading::Media&);             ///< returns a permanent copy; null if empty
-    void tellLost(const shading::Media*, const ShadePoint&) const; ///< warns once that a ray was in more volumes than are tracked
+    const shading::Media* kept(const shading::Media&); ///< returns a permanent copy; null if empty
+    void reportLost(const shading::Media*,
+                    const ShadePoint&) const; ///< warns once that a ray was in more volumes than are tracked
     /// Sets the media at the start of shadow rays between a and b, one of which may be the surface point `at`. Rays that end
     /// there are reversed, because the media are known there.
     void shadowsInMedia(std::span<ShadowRay>, const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint*,

@@ -131,7 +131,7 @@ void MediumEvents::pass(RaySegment& f, Sched& sched) {
     if (const int medium = ray.medium(); medium >= 0 && !world_.media()[size_t(medium)].homogeneous) {
         std::vector<ShadePoint> at(1, p); // its shader runs up to here
         at[0].ray = &ray;
-        if (ray.parted) at[0].I = p.P - ray.volumeBegin();
+        if (ray.crossedMedium) at[0].I = p.P - ray.volumeBegin();
         at[0].Ci = at[0].Oi = Color(0);
         AtmosphereEffect h;
         atmosphere_.atmosphereEffects(world_.media()[size_t(medium)], world_.bindings()[size_t(f.binding)], at, {&h, 1}, true);
@@ -145,8 +145,8 @@ void MediumEvents::pass(RaySegment& f, Sched& sched) {
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
     r.media = media_.beyond(world_.bindings()[size_t(f.binding)], ray.media, p.surface.n, ray.dir, ray.dir);
-    media_.tellLost(r.media, p);
-    r.parted = true;
+    media_.reportLost(r.media, p);
+    r.crossedMedium = true;
     r.vertex = childVertex(ray.vertex, kSegmentEvent, 1);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) {

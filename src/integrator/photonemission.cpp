@@ -43,7 +43,7 @@ double PhotonEmission::power() const {
 void PhotonEmission::learn(std::span<const StoredPhoton> stored, uint32_t pass, uint32_t emitted) {
     impl_->plan->learn(stored, impl_->job(pass, emitted), emitted);
 }
-void PhotonEmission::tellLights() const {
+void PhotonEmission::markPhotonLights() const {
     impl_->world->photons()->lightsOfPasses = impl_->plan->emits();
     impl_->world->photons()->widthOfPasses = impl_->use.width;
 }

@@ -129,7 +129,7 @@ float photonFactor(const float* lobe, const LobeKind&, bool delta, const Vec3& f
                    const Vec3& N);
 
 /// Transmittance of the volume before a photon's hit.
-inline Color leftOfPhoton(const BatchContext& c, size_t point) {
+inline Color photonTransmittance(const BatchContext& c, size_t point) {
     return c.atmosphereEffects.empty() || !c.atmosphereEffects[point].on ? Color(1) : c.atmosphereEffects[point].slope;
 }
 

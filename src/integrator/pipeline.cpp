@@ -179,7 +179,7 @@ void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
 }
 
 void Pipeline::beginTrace() {
-    parts_->accumulator.spoiled.clear();
+    parts_->accumulator.invalidSamples.clear();
     parts_->waitingKernels.waiting.clear();
     parts_->queues.clear();
 }
@@ -273,7 +273,7 @@ void Pipeline::takeResults(std::span<SampleResult> out, std::span<const Accumula
         Color& o = out[i].opacity;
         o = {std::min(o.x, 1.f), std::min(o.y, 1.f), std::min(o.z, 1.f)};
     }
-    for (int i : sums.spoiled) out[size_t(i)].color = Color(std::numeric_limits<float>::quiet_NaN());
+    for (int i : sums.invalidSamples) out[size_t(i)].color = Color(std::numeric_limits<float>::quiet_NaN());
 }
 
 void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
@@ -293,7 +293,7 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
     // While kernels wait for rays no hits are held back: depth first keeps the number of frames small.
     const bool all = sched.frameBytes() > 0 || p.context.raysAtOnce < Context::kSlice;
     for (size_t g : p.queues.ready(all)) shadeHits(g, sched);
-    while (p.queues.full()) settle(sched);
+    while (p.queues.full()) shadeQueued(sched);
 }
 
 /// Notes a ray that may have seen a sky and met an opaque surface instead (Context::seen).
@@ -303,7 +303,7 @@ void Pipeline::blocked(const PathRay& r, const accel::Hit& h) {
         parts_->context.seen->push_back({{r.lobeOrigin, r.dir}, SeenSample::kBlocked});
 }
 
-bool Pipeline::settle(Sched& sched) {
+bool Pipeline::shadeQueued(Sched& sched) {
     if (parts_->queues.empty()) return false;
     shadeHits(parts_->queues.longest(), sched);
     return true;

@@ -23,7 +23,7 @@ public:
     bool emit(const PhotonJob&, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out, const StopFlag* stop);
     // Scheduler callbacks.
     void follow(std::span<const shading::Sched::Task> slice, shading::Sched&) override;
-    bool settle(shading::Sched&) override;
+    bool shadeQueued(shading::Sched&) override;
     void followStrips(shading::Sched&) override;
 
     /// Of this pipeline; valid as long as it.

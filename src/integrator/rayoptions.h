@@ -13,7 +13,7 @@ struct RayOptions {
     float importance = 1;      ///< factor of PathRay::importance, "weight"; 0: no ray is sent
     int samples = 1;           ///< rays, if all lobes are followed
     shading::Fade fade;        ///< "falloff"
-    bool elsewhere = false;    ///< the ray starts at `from`, so the lobe samples no lights
+    bool ownOrigin = false;    ///< the ray starts at `from`, so the lobe samples no lights
     Vec3 from;                 ///< camera space
     float base = 0;            ///< "samplebase": rays start within this part of the footprint
 };

@@ -58,7 +58,7 @@ struct Contribution {
     Color light;                            ///< with the throughput of the path
     LightEvent event = LightEvent::Surface; ///< what made it
     const PathRay* path = nullptr;          ///< the ray up to its last vertex; may be null
-    int32_t share = -1;                     ///< Accumulator::shares
+    int32_t share = -1;                     ///< Accumulator::aovSplits
     const ShaderInstance* of = nullptr;     ///< shader that made the light; null: unknown
     uint16_t end = 0;                       ///< PathRay::path after the light event: selects the light path outputs; 0: none
 };
@@ -126,7 +126,7 @@ struct OpacityQuery {
 };
 
 /// The part of a contribution that an output also receives, and the next output for the same light.
-struct Share {
+struct AovSplit {
     AccumulatorId target; ///< of the output
     Color ratio;          ///< the output's part of the light, by channel
     int32_t next;

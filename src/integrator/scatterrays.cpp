@@ -290,7 +290,7 @@ void ScatterRays::keepLobes(size_t b, BatchContext& c) {
         const uint64_t kind = reinterpret_cast<uintptr_t>(&s.raysAt(point));
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
         const bool sampled = s.lightsAt(point) &&
-                             !((v_.next.single | s.lobes[b].elsewhere) >> i & 1); // then emission that it hits is weighted by MIS
+                             !((v_.next.single | s.lobes[b].ownOrigin) >> i & 1); // then emission that it hits is weighted by MIS
         r.pdf[i] = sampled && rules_.lightsAtRequests ? v_.next.pdf[i] * s.lobes[b].chosen[i] : -1;
         r.binding[i] = sampled ? c.bindings[point] : -1;
         if (const uint16_t path = uint16_t(r.path[i])) {

@@ -69,7 +69,7 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
     const ShadePoint& p = c_.points[size_t(a.point)];
     const bool turned = dot(p.surface.n, c_.rays[size_t(a.point)].dir) > 0;
     const Vec3 side = turned ? -p.surface.n : p.surface.n;
-    if (!b.elsewhere) {
+    if (!b.ownOrigin) {
         const float cosine = dot(b.normal, side); // a normal reversed by rounding has no effect
         return Entry{b.normal == Vec3() || std::fabs(cosine) > 1 - 1e-6f ? side
                      : cosine < 0                                        ? -b.normal
@@ -124,7 +124,7 @@ void Walks::start(int asked) {
     if (const auto& on = entered->surface) {
         const Vec3 side = dot(on->n, entered->out) < 0 ? -on->n : on->n;
         if (const float away = dot(w.dir, side); away > 0) w.dir -= side * (2 * away); // a tilted normal: enters all the same
-        w.at = geometry::offsetOrigin(*on, w.dir, b.elsewhere ? 0 : length(p.P - p.surface.P));
+        w.at = geometry::offsetOrigin(*on, w.dir, b.ownOrigin ? 0 : length(p.P - p.surface.P));
     }
     walkers_.push_back(w);
 }
@@ -249,7 +249,7 @@ bool Walks::intersect(Walker& w, const accel::Hit& hit, double) {
     return false;
 }
 
-void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
+void Walks::enterAt(BatchContext& c, std::span<const Exit> exits) {
     const WorldImpl& world = world_;
     for (const Exit& x : exits) {
         const WalkAsked& a = asked_[size_t(x.asked)];
@@ -295,7 +295,7 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     c->bound = c_.bound;
     c->binding = &world_.bindings()[size_t(world_.bindingOf()[exits[0].shape])];
     c->below = true;
-    settleAt(*c, exits);
+    enterAt(*c, exits);
     std::vector<float> indirect;
     for (const Exit& x : exits) indirect.push_back(asked_[size_t(x.asked)].indirect);
     vertexLight_.runExits(*c, indirect, sched);

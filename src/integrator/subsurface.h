@@ -55,7 +55,7 @@ private:
     void weigh(Walker&, double way, bool scatters) const;
     double distance(const Walker&) const;
     /// Turns the exits into points of a batch that gathers irradiance.
-    void settleAt(BatchContext&, std::span<const Exit>);
+    void enterAt(BatchContext&, std::span<const Exit>);
     void gatherAt(std::span<const Exit>, Sched&);
     /// Handles exits on surfaces whose shaders return the entering light themselves.
     void askSurfaces(Sched&);

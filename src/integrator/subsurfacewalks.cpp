@@ -50,7 +50,7 @@ SubsurfaceMedium SubsurfaceWalks::mediumOf(const SiteInfo& s, const ShadePoint& 
     // For a displaced surface, the facet and the shader's point may differ by a micropolygon.
     const float apart = p.surface.displaced ? length(p.surface.dPdu) * p.du + length(p.surface.dPdv) * p.dv : 0;
     const float away = length(b.from - p.P);
-    b.elsewhere = std::isfinite(away) && away > geometry::roundingError(p.P) + 4 * p.surface.pError + apart;
+    b.ownOrigin = std::isfinite(away) && away > geometry::roundingError(p.P) + 4 * p.surface.pError + apart;
     return b;
 }
 

@@ -24,7 +24,7 @@ struct WalkAsked {
     Color weight;       ///< by channel
     AccumulatorId target = shading::kNoAccumulator;
     uint32_t vertex = 0; ///< random number key
-    int32_t share = -1;  ///< Accumulator::shares
+    int32_t share = -1;  ///< Accumulator::aovSplits
     float indirect = 1;  ///< LobeVertex::indirect at the exit
 };
 
@@ -53,12 +53,12 @@ struct LobeVertex {
     float maxDistance = 1e38f;                      ///< of the call
     int samples = 1;                                ///< rays of the call, or light samples
     bool ownsTarget = false;                        ///< a suspended request: the target also receives distance and transmission
-    bool elsewhere = false;                         ///< trace() from another position than the surface point: `from`
+    bool ownOrigin = false;                         ///< trace() from another position than the surface point: `from`
     Vec3 from;                                      ///< camera space
     float bias = -1;                                ///< < 0: the error bound of the hit
     float base = 0;                                 ///< "samplebase": rays start within this part of the footprint
     int lit = -1;                                   ///< index in LitSurfaces::values
-    int32_t share = -1;                             ///< Accumulator::shares: outputs that include this request; -1: none
+    int32_t share = -1;                             ///< Accumulator::aovSplits: outputs that include this request; -1: none
     float importance = 1;                           ///< "weight", for rayinfo()
     Color tint{1};                                  ///< of the environment map
     const TraceSite* trace = nullptr;               ///< null: no trace()

@@ -84,7 +84,7 @@ static bool tracesSets(const WorldImpl& w, const BoundKernel& kernel) {
 }
 
 bool VertexLight::takes(const BatchContext& c) const {
-    if (!asksBlocks(c) || c.aside || c.between || c.below || tracesSets(world_, *c.bound)) return false;
+    if (!asksBlocks(c) || c.lightOutput || c.between || c.below || tracesSets(world_, *c.bound)) return false;
     return takesRays(c);
 }
 
@@ -155,7 +155,7 @@ void VertexLight::followLobes(BatchContext& c, Sched& sched) {
     Parts& p = *parts_;
     p.selection.prepare();
     if (p.flight.on()) return p.flight.follow(c, sched);
-    if (world_.lightsAsk()) p.lights.tellLights(c);
+    if (world_.lightsAsk()) p.lights.recordLitSurfaces(c);
     p.gather.mark(c);
     p.selection.select(c);
     counters_.ignored += p.blocks.ignored;
@@ -262,7 +262,7 @@ void VertexLight::beginExits(const BatchContext& c) {
 
 /// Whether the strips of a batch all make the same first request, for one ray each, at nearly all points of the batch.
 bool VertexLight::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
-    if (world_.traceSubsets() || c.aside || c.between || c.below || !c.clear.empty() || c.points.empty() ||
+    if (world_.traceSubsets() || c.lightOutput || c.between || c.below || !c.clear.empty() || c.points.empty() ||
         photons_.photonTrace() || !takesRays(c))
         return false;
     size_t asked = 0;

@@ -41,7 +41,7 @@ struct alignas(64) LobeBlock {
     Row chosen;          ///< by select(): probability of following its ray
     Lanes asked = 0;     ///< points whose lobe has a weight
     Lanes lights = 0;    ///< points whose lobe samples lights
-    Lanes elsewhere = 0; ///< by request(): points whose ray starts elsewhere
+    Lanes ownOrigin = 0; ///< by request(): points whose ray starts elsewhere
     Lanes stays = 0;     ///< points whose lobe sends no ray for another reason than depth
     Lanes ended = 0;     ///< by select(): points where a depth limit ends the ray that would have been sent
     Lanes failed = 0;    ///< by select(): points whose probability is not finite; no ray is sent
@@ -49,7 +49,7 @@ struct alignas(64) LobeBlock {
     Lanes left = 0;      ///< of these: points where it leaves the lights that send photons to them
     Lanes boundless = 0; ///< points where only the depth limit of the picture ends its ray
     /// Empties all sets, for the next block; rows keep their values.
-    void forget() { asked = lights = elsewhere = stays = ended = failed = narrow = left = boundless = 0; }
+    void forget() { asked = lights = ownOrigin = stays = ended = failed = narrow = left = boundless = 0; }
 };
 
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.
@@ -85,7 +85,7 @@ struct alignas(64) LightBlock {
     bool emitter = false;                  ///< `end` is set
     bool met = false;                      ///< rays can hit it: multiple importance sampling applies
     const float* draws = nullptr;          ///< a row, samples of the light that the lobe takes; null: one
-    bool parted = false;                   ///< `part` is set
+    bool hasPart = false;                  ///< `part` is set
     Row part;                              ///< MIS weight of samples of this kind
 };
 

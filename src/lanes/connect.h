@@ -50,7 +50,7 @@ static Lanes contributeLight(const VertexBlock& v, const LobeBlock& lobe, const 
         if (ahead && l.emitter) mask &= dot(load3(l.end, at) - load3(to.origin, at), load3(l.w, at)) > 0;
         V3 c = load3(lobe.weight, at) * load3(v.weight, at) * load3(l.Cl, at);
         c = c * (load3(value + kRowColour * kBlock + at, kBlock) / (l.draws ? fcos * load(l.draws + at) : fcos));
-        if (l.parted) c = c * load(l.part + at);
+        if (l.hasPart) c = c * load(l.part + at);
         if (l.met) { // `other`: density of this direction by the lobe's own sampling
             const vf chosen = load(lobe.chosen + at);
             const vf other = select(maskFrom(met, at) & (chosen > 0), pdf * chosen, vf(0));

@@ -91,8 +91,8 @@ AL_INLINE D3 withinAngle(const D3& a, const D3& b, const D3& c, hd angle, hd u, 
     const hd cosB1 = divisor != 0 ? clamp(((q * t - p * s) * cosA - q) / divisor, hd(-1), hd(1)) : hd(1);
     const D3 c1 = a * cosB1 + normalize(c - a * dot(c, a)) * rootAbove(1 - cosB1 * cosB1);
     const hd z = 1 - v * (1 - dot(c1, b));
-    const D3 aside = c1 - b * dot(c1, b);
-    return choose(dot(aside, aside) > 0, b * z + normalize(aside) * rootAbove(1 - z * z), b);
+    const D3 across = c1 - b * dot(c1, b);
+    return choose(dot(across, across) > 0, b * z + normalize(across) * rootAbove(1 - z * z), b);
 }
 
 /// TriangleLamp::place().

@@ -35,7 +35,7 @@ AL_INLINE void giveSurface(const LobeArguments& a, const float* rows, int stride
 }
 
 /// trace() rays that do not start at the point.
-AL_INLINE vm startsElsewhere(const VertexBlock& v, const float* rows, int stride, int at) {
+AL_INLINE vm hasOwnOrigin(const VertexBlock& v, const float* rows, int stride, int at) {
     const V3 P = load3(v.P, at), size = absolute(P);
     const vf near = vf(1.1920929e-7f) * (size.x + size.y + size.z) + vf(1e-37f);
     return ~(length(load3(rows + at, stride) - P) <= near + vf(4) * load(v.error + at));
@@ -63,7 +63,7 @@ static Lanes requestLobes(const VertexBlock& v, const LobeArguments& a, const fl
         }
         store(to.lobe[kRowA] + at, x);
         some |= bitsFrom(wanted, at);
-        if (a.from >= 0) to.elsewhere |= bitsFrom(wanted & startsElsewhere(v, rows + a.from * stride, stride, at), at);
+        if (a.from >= 0) to.ownOrigin |= bitsFrom(wanted & hasOwnOrigin(v, rows + a.from * stride, stride, at), at);
         odd |= bitsFrom(wanted & ~usual, at) | bitsFrom(mask & ~finite(w), at);
     }
     to.asked |= some;

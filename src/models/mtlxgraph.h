@@ -56,7 +56,7 @@ private:
     int count_ = 0, graphs_ = 0; ///< graphs_: how many lie in each other now
     std::map<std::pair<const XmlElement*, std::string>, MtlxValue> known_;
     std::set<const XmlElement*> open_;
-    std::set<std::string> said_;
+    std::set<std::string> reported_;
 };
 
 /// Numbers of a type; 0: no type that is a value here.

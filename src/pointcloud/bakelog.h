@@ -41,12 +41,12 @@ public:
     bool add(const std::string& file, const BakeLayout&, const BakeKey&, std::span<const float> numbers);
     /// Appends records added since the last call to the earlier ones, in order of keys. Averages the samples of grid points.
     /// Removes bitwise duplicates, because points may be shaded again. Call while no thread adds.
-    void settle();
-    /// Whether anything was added since the last settle(). Nobody adds meanwhile.
+    void commit();
+    /// Whether anything was added since the last commit(). Nobody adds meanwhile.
     bool pending() const;
-    /// Discards records added since the last settle(), because the samples were void.
+    /// Discards records added since the last commit(), because the samples were void.
     void discard();
-    /// Calls settle(), writes all files except those of other owners, and empties the log. Returns false if a file could not be
+    /// Calls commit(), writes all files except those of other owners, and empties the log. Returns false if a file could not be
     /// written; each is reported.
     bool write(const OutputPolicy&, Diagnostics&, FileOwners = {});
     bool empty() const { return files_.empty(); }
@@ -61,15 +61,15 @@ private:
     };
     struct Row {
         const BakeLayout* layout;
-        size_t at; ///< in File::settled
+        size_t at; ///< in File::committed
     };
     struct File {
         std::vector<Entry> entries;
-        std::vector<float> pending, settled;
+        std::vector<float> pending, committed;
         std::vector<Row> rows;
         uint64_t notFinite = 0;
     };
-    void settle(File&);
+    void commit(File&);
     void count();
     bool writeFlat(const std::string& name, const File&, const OutputPolicy&, Diagnostics&) const;
     bool writeCloud(const std::string& name, const File&, const OutputPolicy&, Diagnostics&) const;

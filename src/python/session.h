@@ -29,7 +29,7 @@ public:
     /// Procedural by a function of Python, at once: make(detail), with the graphics state saved before and restored after.
     void procedural(const py::object& make, const py::object& bound, const std::string& file, int line);
     /// ReadArchive, whose comments go to heard(kind, text).
-    void readArchive(const std::string& name, const py::object& heard, const std::string& file, int line);
+    void readArchive(const std::string& name, const py::object& take, const std::string& file, int line);
     /// RiArchiveRecord: "comment", "structure" and "verbatim".
     void record(const std::string& kind, const std::string& text, const std::string& file, int line);
     /// RiTransformPoints: n points of three numbers each, from one space to another; None where one is not known.

@@ -37,7 +37,7 @@ public:
     /// Frames are rendered by these processes from here on. They must outlive the renderer, and report its diagnostics.
     void setProcesses(FrameProcesses&);
     /// Waits until all submitted frames are rendered.
-    void settle();
+    void waitForFrames();
     /// Whether the files known before a scene is read (-o, --checkpoint, --stats) can be written. Returns false after an error,
     /// which is reported.
     bool canBegin();
@@ -52,7 +52,7 @@ public:
     void finish();
 
     using Outcome = render::Outcome; ///< as of render
-    /// For frames rendered so far; complete after settle().
+    /// For frames rendered so far; complete after waitForFrames().
     const Outcome& outcome() const { return outcome_; }
     /// Figures of all frames so far: times, rays and counts are sums; size, samples and noise are the last frame's.
     RenderStats stats() const;

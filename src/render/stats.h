@@ -54,9 +54,9 @@ struct RenderStats {
         double average = 0; ///< bounces of a path
     } depth;
     int errors = 0, warnings = 0;
-    /// Sums for shading.laneOccupancy and depth.average, which settle() computes; not written.
+    /// Sums for shading.laneOccupancy and depth.average, which finalise() computes; not written.
     double lanesUsed = 0, lanesRun = 0, depthSum = 0, paths = 0;
-    void settle() {
+    void finalise() {
         shading.laneOccupancy = lanesRun > 0 ? lanesUsed / lanesRun : 0;
         depth.average = paths > 0 ? depthSum / paths : 0;
     }

@@ -349,11 +349,11 @@ private:
     void dispatch(const Call& call);
     // executed.cpp: ReaderOptions::executed
     /// Performs a request and passes it on, or what is in it.
-    void tell(const Call& call);
-    void tellProcedural(const Call& call, const std::string& kind);
-    void tellName(std::string_view request, const SourcePlace& place);
+    void announce(const Call& call);
+    void announceProcedural(const Call& call, const std::string& kind);
+    void announceName(std::string_view request, const SourcePlace& place);
     /// Options of an archive in the world, kept until it is known that it has no world itself.
-    void tellHeld();
+    void announceHeld();
     bool conditional(const Call& call); ///< handles IfBegin and its kin; false for other requests
     bool record(const Call& call);      ///< takes the request into the archive being recorded; false: none is
     void checkScope(const Call& call);  ///< warns where the request is out of scope
@@ -448,10 +448,10 @@ private:
     bool hasVariables_ = false;                           ///< texts may have variables
     bool making_ = false;                                 ///< what is in procedurals that waited is being made
     bool replaying_ = false;                              ///< inside an archive that was read before
-    bool telling_ = false;   ///< a request that was passed on is executed: what it makes of itself is not
-    std::vector<Call> held_; ///< tellHeld()
-    Lasting base_;           ///< what a scene begins with
-    size_t baseWorld_ = 0;   ///< worldSerial_ at that time
+    bool announcing_ = false; ///< a request that was passed on is executed: what it makes of itself is not
+    std::vector<Call> held_;  ///< announceHeld()
+    Lasting base_;            ///< what a scene begins with
+    size_t baseWorld_ = 0;    ///< worldSerial_ at that time
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.

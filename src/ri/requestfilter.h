@@ -67,7 +67,7 @@ private:
     std::set<int> frames_;
 };
 
-/// Requests in text. Messages are added to `said`.
-std::vector<Call> requestsOf(const std::string& text, const std::string& name, Diagnostics& said);
+/// Requests in text. Messages are added to `reported`.
+std::vector<Call> requestsOf(const std::string& text, const std::string& name, Diagnostics& reported);
 
 } // namespace alpenglow::ri

@@ -86,9 +86,9 @@ private:
     size_t most_;
     std::mutex mutex_;
     std::vector<Message> messages_;
-    Counts kept_;                                        ///< since the last run
-    Counts lost_;                                        ///< that were too many to be kept
-    std::set<std::pair<std::string, std::string>> said_; ///< by once()
+    Counts kept_;                                            ///< since the last run
+    Counts lost_;                                            ///< that were too many to be kept
+    std::set<std::pair<std::string, std::string>> reported_; ///< by once()
     size_t saidBytes_ = 0;
     size_t bytes_ = 0;
     std::FILE* to_;

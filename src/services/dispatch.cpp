@@ -132,7 +132,7 @@ void Services::print(const ServiceCall& call, int lane, const std::string& text)
     const KernelRun& c = call.c;
     const rsl::ir::Site& d = call.d;
     if (call.first + lane >= int(c.points.size())) return;
-    if (c.aside || c.again || (c.binding && c.bound == &c.binding->moveS)) return; // the run that shades reports it
+    if (c.lightOutput || c.again || (c.binding && c.bound == &c.binding->moveS)) return; // the run that shades reports it
     const ShadePoint& p = c.points[size_t(call.first + lane)];
     const shading::PathRay* r = c.rays.empty() ? p.ray : &c.rays[size_t(call.first + lane)];
     rsl::PrintKey key;

@@ -20,7 +20,7 @@ struct KernelRun {
     const BoundLight* light = nullptr;          ///< whose kernel runs
     const LitSurface* lit = nullptr;            ///< while a light's kernel runs: the lit surface
     const Medium* volume = nullptr;             ///< while a volume's kernel runs
-    const LightOutput* aside = nullptr;         ///< the run computes this output only
+    const LightOutput* lightOutput = nullptr;   ///< the run computes this output only
     bool forShadow = false;                     ///< the kernel returns opacity for shadow rays
     bool again = false;                         ///< a repeated run: prints and bakes nothing
     bool dark = false;                          ///< loops over lights are empty

@@ -175,7 +175,7 @@ public:
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
     /// Fills inputs that come from the displacement shader, including derivatives, from its run at the same points.
-    void tell(const Batch& displaced);
+    void takeDisplacement(const Batch& displaced);
     /// Overrides a parameter of that type at a point, if it is varying or an input of its own (rsl::InputName::sent); derivatives
     /// become 0. A parameter of another type is not changed.
     void give(std::string_view parameter, int point, const GivenValue&);

@@ -116,7 +116,7 @@ struct RayExtra {
     Color whole{0};       ///< its weight without `kept` and `indirect`
     Color environment{0}; ///< trace() with a map: light of unoccluded rays
     Color part{0};        ///< for a target with sums: weight among all rays of the request, including continuations
-    int32_t share = -1;   ///< Accumulator::shares: outputs that receive a part of its light; -1: none
+    int32_t share = -1;   ///< Accumulator::aovSplits: outputs that receive a part of its light; -1: none
     int32_t lit = -1;     ///< values of the emitting surface for lights that query them; -1: none
     float indirect = 1;   ///< factor for light of surfaces, not of lights, by the energy rule
     FreeFlight flown;     ///< segment on which it was scattered, at its origin
@@ -162,7 +162,7 @@ struct PathRay {
     bool first : 1 = true;          ///< requested directly by its target: writes distance and transmission
     bool counts : 1 = false;        ///< its hit writes opacity, depth and AOVs of its camera sample
     bool quiet : 1 = false;         ///< of a gather() that needs no light: only shaders for its outputs run
-    bool parted : 1 = false;        ///< crossed a volume boundary: volumes before `origin` have been applied
+    bool crossedMedium : 1 = false; ///< crossed a volume boundary: volumes before `origin` have been applied
     bool passed : 1 = false;        ///< not a camera ray, and has passed a surface: it started at lobeOrigin
     bool shadowDiffers : 1 = false; ///< passed a surface that shadow rays may see differently: Opacity::differs
     uint8_t trail = 0;              ///< Trail, as a bit set
@@ -210,7 +210,7 @@ struct PathRay {
         origin = at;
     }
     /// Start of the segment for a volume shader.
-    Vec3 volumeBegin() const { return parted ? origin : begin(); }
+    Vec3 volumeBegin() const { return crossedMedium ? origin : begin(); }
 };
 static_assert(sizeof(PathRay) <= 120);
 

@@ -74,7 +74,7 @@ public:
         virtual void followStrips(Scheduler&) {}
         /// Called when no task and no strip is left: continues with hits that follow() has held back with their targets. Returns
         /// false if there are none.
-        virtual bool settle(Scheduler&) { return false; }
+        virtual bool shadeQueued(Scheduler&) { return false; }
     };
 
     /// `stop`: polled between slices; once set, run() abandons the remaining work. May be null.
@@ -156,7 +156,7 @@ public:
     /// Works until everything is done or stop is set. Returns false if stopped.
     bool run() {
         Tasks slice;
-        while (queued_ > 0 || !ready_.empty() || service_.settle(*this)) {
+        while (queued_ > 0 || !ready_.empty() || service_.shadeQueued(*this)) {
             if (queued_ == 0 && ready_.empty()) continue;
             if (stop_ && *stop_) {
                 abandon();

@@ -209,7 +209,7 @@ private:
                                              const SourcePlace&);
     void trim();
     /// Moves the levels of a map to a scratch file if they do not fit into memory. If the disk is full they stay, with a warning.
-    void settle(Texture&, const SourcePlace&);
+    void pageOut(Texture&, const SourcePlace&);
     std::shared_ptr<const Texture> loadFaces(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);
     Diagnostics& diags_;

@@ -101,7 +101,7 @@ private:
     void giveUp(const std::string& why);
     void say(const Diagnostic&);
     void interrupt();
-    void tell();
+    void notifyViewers();
     nlohmann::json moveCamera(const nlohmann::json&);
     nlohmann::json askSave(const nlohmann::json&);
 

@@ -102,7 +102,7 @@ bool bakedNow(const World& world) { return implOf(world).clouds().baked.pending(
 
 void commitBakes(const World& world, bool keep) {
     pointcloud::BakeLog& log = implOf(world).clouds().baked;
-    keep ? log.settle() : log.discard();
+    keep ? log.commit() : log.discard();
 }
 
 bool writeBakes(const World& world, bool allowWrite, const pointcloud::FileOwners& others, Diagnostics& d) {

@@ -66,7 +66,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         auto f = i.text.find(name);
         return f == i.text.end() ? std::string() : f->second;
     };
-    auto said = [&](const std::string& what, const std::string& message) {
+    auto reported = [&](const std::string& what, const std::string& message) {
         world.diagnostics().reportOnce("trace:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::Unimplement, place, s.op + "(): " + message, {}, {}});
     };
@@ -90,7 +90,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
     t->distribution = row("distribution") >= 0 ? row("distribution") : row("bsdf");
     for (const char* name : {"environmentmap", "environmentspace"})
-        if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
+        if (row(name) >= 0) reported(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     if (const std::string map = text("environmentmap"); !map.empty()) {
         t->map = world.textures().open(map, world.settings().texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
@@ -165,7 +165,7 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
         const auto f = i.text.find(name);
         return f == i.text.end() ? std::string() : f->second;
     };
-    const auto said = [&](const std::string& what, const std::string& message, const std::string& hint = {}) {
+    const auto reported = [&](const std::string& what, const std::string& message, const std::string& hint = {}) {
         world.diagnostics().reportOnce("subsurface:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::Unimplement, place, "subsurface(): " + message, hint, {}});
     };
@@ -182,18 +182,18 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     for (size_t a = 0; a < i.rows.size(); ++a)
         if (s.argKinds[a] == rsl::ir::Kind::Triple) (b->point < 0 ? b->point : b->normal) = i.rows[a];
     for (const char* name : {"model", "groupname"})
-        if (row({name}) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
+        if (row({name}) >= 0) reported(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];
     if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
-        said("type", "name a point cloud by \"filename\"; without one rays compute the light");
+        reported("type", "name a point cloud by \"filename\"; without one rays compute the light");
     else if (!type.empty() && type != "pointcloud" && type != "raytrace")
-        said("type " + type, "unknown type \"" + type + "\"; rays compute the light", "types are raytrace and pointcloud");
+        reported("type " + type, "unknown type \"" + type + "\"; rays compute the light", "types are raytrace and pointcloud");
     const std::string model = text("model");
     if (model == "jensen") b->model = SubsurfaceSite::Model::Dipole;
     else if (model == "grosjean") b->model = SubsurfaceSite::Model::BetterDipole;
     else if (!model.empty() && model != "walk")
-        said("model " + model, "unknown model \"" + model + "\"; random walks below the surface are used",
-             "models are walk, jensen and grosjean");
+        reported("model " + model, "unknown model \"" + model + "\"; random walks below the surface are used",
+                 "models are walk, jensen and grosjean");
     return b;
 }
 

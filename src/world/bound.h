@@ -81,9 +81,9 @@ struct BoundLight {
     bool seenBy(const shading::RayKind& k) const {
         return k.indirectOnly ? strategy == LightStrategy::Trace : !k.fromTrace || strategy != LightStrategy::Illuminance;
     }
-    float intensityScale = 0; ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
-    bool mean = false;        ///< Area: returns the mean of Cl over its surface without further factors; invisible to rays
-    bool hazy = false;        ///< Area, path: one of its shapes is in an atmosphere
+    float intensityScale = 0;  ///< > 0: Cl is an intensity over squared distance; radiance is Cl d^2 times this
+    bool mean = false;         ///< Area: returns the mean of Cl over its surface without further factors; invisible to rays
+    bool inAtmosphere = false; ///< Area, path: one of its shapes is in an atmosphere
     uint32_t pointNeeds = geometry::kNeedAll; ///< geometry::PointNeed for points on the emitter
     bool placed = false;                      ///< Point, Area: has a position: `place`, half size `extent`
     Vec3 place;                               ///< camera space
@@ -191,11 +191,11 @@ struct SurfaceBinding {
     }
     /// The media of a ray in medium `from` that arrives at a point with normal n in direction `in` and leaves in direction `to`.
     shading::Media beyond(const shading::Media& from, const Vec3& n, const Vec3& in, const Vec3& to) const;
-    bool displacementTells = false; ///< displacementS computes its shader's outputs for displacement() queries
-    BoundKernel entering;           ///< entering light by its subsurface() calls (rsl::kEntering); null: by lights
+    bool displacementQueried = false; ///< displacementS computes its shader's outputs for displacement() queries
+    BoundKernel entering;             ///< entering light by its subsurface() calls (rsl::kEntering); null: by lights
     BoundKernel moveS; ///< P as the surface shader writes it, if that displaces the primitive (no displacement shader)
     std::vector<LightOutput> lightOutputs;   ///< each with a kernel of its own
-    std::vector<char> aside;                 ///< by AOV: computed by `lightOutputs`; empty: none
+    std::vector<char> inLightOutputs;        ///< by AOV: computed by `lightOutputs`; empty: none
     scene::LightSet lights;                  ///< lights that are on, with the parts of their shaders: WorldImpl::eachLight()
     int group = 0;                           ///< equal: same program and lights; points are shaded in one batch
     int program = 0;                         ///< equal: same kernel; points may share a V batch

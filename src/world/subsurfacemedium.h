@@ -13,7 +13,7 @@ struct SubsurfaceMedium {
     int group = 0;          ///< SubsurfaceWalks::ofShape(): group of the shapes that bound the material
     Vec3 normal;            ///< unit outward normal where light enters; 0: the surface's
     Vec3 from;              ///< where light enters, if not at the shaded point
-    bool elsewhere = false; ///< `from` counts
+    bool ownOrigin = false; ///< `from` counts
 };
 
 /// Attribute "subsurface" of a shape; < 0: not set.

@@ -248,8 +248,8 @@ private:
         w_.placeLights(*evaluator_);
         for (const auto& [shape, binding] : w_.emittersInAtmosphere_) {
             BoundLight& light = w_.lights_[size_t(shape->attributes().areaLight)];
-            light.hazy = true;
-            for (int part : light.parts) w_.lights_[size_t(part)].hazy = true;
+            light.inAtmosphere = true;
+            for (int part : light.parts) w_.lights_[size_t(part)].inAtmosphere = true;
         }
         w_.makeChoosers(d_);
         w_.facts_.shapes = w_.shapes_.size();

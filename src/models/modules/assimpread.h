@@ -18,7 +18,7 @@ public:
 
 private:
     void note(bool error, std::string text) {
-        if (said_.insert(text).second) out_.notes.push_back({error, std::move(text)});
+        if (reported_.insert(text).second) out_.notes.push_back({error, std::move(text)});
     }
     void warn(std::string text) { note(false, std::move(text)); }
     void error(std::string text) { note(true, std::move(text)); }
@@ -46,7 +46,7 @@ private:
     Model& out_;
     std::map<std::string, int> names_;  ///< of nodes
     std::map<std::string, int> images_; ///< by the name that materials use
-    std::set<std::string> said_;
+    std::set<std::string> reported_;
 };
 
 /// To row vectors.

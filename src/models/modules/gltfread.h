@@ -19,7 +19,7 @@ public:
 
 private:
     void note(bool error, std::string text) {
-        if (said_.insert(text).second) out_.notes.push_back({error, std::move(text)});
+        if (reported_.insert(text).second) out_.notes.push_back({error, std::move(text)});
     }
     void warn(std::string text) { note(false, std::move(text)); }
     void error(std::string text) { note(true, std::move(text)); }
@@ -60,7 +60,7 @@ private:
 
     const tinygltf::Model& in_;
     Model& out_;
-    std::set<std::string> said_;
+    std::set<std::string> reported_;
 };
 
 /// A number of an extension; the default where there is none.

@@ -32,7 +32,7 @@ public:
 private:
     void say(Severity, Rie, const SourcePlace&, std::string);
     Sink sink_;
-    size_t said_ = 0;
+    size_t reported_ = 0;
     SourcePlace last_;
 };
 

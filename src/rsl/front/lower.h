@@ -28,7 +28,7 @@ ExprPtr choose(ExprPtr condition, ExprPtr yes, ExprPtr no, Place);
 /// Zero, "" or null.
 ExprPtr zeroOf(Base, Place);
 /// `varying` and the height from the operands.
-void settle(Expr&);
+void inferFromOperands(Expr&);
 
 /// The pass; used once.
 class Lowering {

@@ -41,7 +41,8 @@ struct InputName {
     static InputName space(std::string_view from, std::string_view to) {
         return {Kind::Space, {}, false, false, std::string(from), std::string(to)};
     }
-    /// Under it the caller of the compiler says what there is, too: KernelOptions::stringParameters (HeardOutput, HeardMember).
+    /// Under it the caller of the compiler says what there is, too: KernelOptions::stringParameters (QueriedOutput,
+    /// QueriedMember).
     static InputName displacement(std::string_view name) { return {Kind::Displacement, std::string(name), false, false, {}, {}}; }
     /// A member that displacement() leaves, or its length.
     static InputName left(std::string_view member, bool length = false) {
@@ -108,20 +109,20 @@ public:
 
 /// Describes an output of the displacement shader to the surface's kernel, which may query it: the value of the string parameter
 /// InputName::displacement(NAME).
-struct HeardOutput {
+struct QueriedOutput {
     int kind = 0;         ///< ir::Kind of an element
     int length = 0;       ///< of an array; 0: none
     bool varying = false; ///< points differ
     /// Nothing for any other text.
-    static std::optional<HeardOutput> parse(const std::string&);
+    static std::optional<QueriedOutput> parse(const std::string&);
     std::string text() const;
 };
 /// The same of a member that displacement() leaves: InputName::left(NAME).
-struct HeardMember {
+struct QueriedMember {
     int count = 0;       ///< elements of an array; 0: none
     bool length = false; ///< their number is an input, too
-    /// As HeardOutput, for names that text() makes.
-    static HeardMember parse(const std::string&);
+    /// As QueriedOutput, for names that text() makes.
+    static QueriedMember parse(const std::string&);
     std::string text() const;
 };
 

@@ -146,7 +146,7 @@ void Connection::sendShadow(const Site& site, size_t point, size_t lane, const V
     s.path = v_.pathOf(site, false, point, w, c);
     if (s.path) s.light = paths_.lights[v_.numberOf(of)];
     // Under the other hiders, light loops and trace() with "samplelights" let lights without "shadows" through.
-    const bool asInLoops = !rules_.pickOne && (c.below || (!site.lighting && !emitter && !of.isSky()));
+    const bool asInLoops = !rules_.pickOne && (c.subsurface || (!site.lighting && !emitter && !of.isSky()));
     if (says && says->shadowRadius > 0) { // to a point on the disk
         const VertexBlock& v = v_.vertices[point / kBlock];
         const uint32_t use = kLightPoint + v_.numberOf(of), vertex = v.lightVertex[point % kBlock];

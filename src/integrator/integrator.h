@@ -1,4 +1,4 @@
-// All that other rooms use of light transport: the light along camera rays (Integrator), emission of photons (PhotonEmission),
+// All that other folders use of light transport: the light along camera rays (Integrator), emission of photons (PhotonEmission),
 // and what is learned of lights before the first sample. All of it is constructed from a frame prepared for rendering (World).
 // Under "hidden" and "raytrace" shaders keep their classic RenderMan semantics; under "path" all light reaches their lobes
 // (docs/design/light-transport.md).

@@ -27,7 +27,7 @@ void LightSampling::recordLitSurfaces(const BatchContext& c) {
                 }
                 v_.litSurface[point] = int(all.size());
                 if (!s.info) { // no call: points in a medium, and exits of walks
-                    all.emplace_back().binding = c.below ? c.bindings[point] : -1;
+                    all.emplace_back().binding = c.subsurface ? c.bindings[point] : -1;
                     continue;
                 }
                 const auto row = [&](int r) { return s.rows[b][size_t(r) * size_t(s.stride) + i]; };

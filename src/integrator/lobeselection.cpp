@@ -34,7 +34,7 @@ void LobeSelection::select(const BatchContext& c) {
     // Sums of outputs need not conserve energy.
     const SelectRules rules{of.data(), world_.settings().unbiased || c.lightOutput, !rules_.pickOne};
     for (size_t k = 0; k < v_.count; ++k) {
-        const bool still = (!world_.settings().indirect && v_.sites[k].diffuse) || (c.below && !rules_.pickOne);
+        const bool still = (!world_.settings().indirect && v_.sites[k].diffuse) || (c.subsurface && !rules_.pickOne);
         const bool stays = still && !v_.sites[k].walks && !flight_.on(); // PhotonFlight has limits of its own
         for (size_t b = 0; b < v_.blocks && stays; ++b) v_.sites[k].lobes[b].stays = ~Lanes(0);
     }

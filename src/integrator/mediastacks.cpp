@@ -78,7 +78,7 @@ void MediaStacks::dim(std::span<const MediumPart> parts, std::span<const ShadowR
         for (end = first; end < order.size() && order[end]->medium == order[first]->medium; ++end) {
             const MediumPart& part = *order[end];
             if (m.homogeneous) {
-                out[part.ray] *= m.homogeneous->left(length(part.to - part.from));
+                out[part.ray] *= m.homogeneous->transmittance(length(part.to - part.from));
                 continue;
             }
             ShadePoint& p = points.emplace_back();

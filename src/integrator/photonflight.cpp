@@ -101,7 +101,7 @@ void PhotonFlight::follow(BatchContext& c, Sched& sched) {
     lookBack(c, sched);
     rest(c);
     for (size_t b = 0; b < v_.blocks; ++b) send(b, c, sched);
-    if (!subsurface_.below.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
+    if (!subsurface_.media.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
 }
 
 void PhotonFlight::mark(BatchContext& c) {

@@ -59,7 +59,7 @@ struct CameraRay {
     uint32_t sample = 0;         ///< sample number in the pixel: the key of all random numbers
     /// For irradiance caching only: records are made where shaders at the hit request hemispheres. See World::interpolates().
     bool records = false;
-    /// For deep shadow maps only: computes SampleResult::left alone. Equal for all rays of a call.
+    /// For deep shadow maps only: computes SampleResult::transmittance alone. Equal for all rays of a call.
     bool depths = false;
     /// For depth only: computes SampleResult::z alone, given integrator::depthsNeedNoShaders(). Equal for all rays of a call.
     bool depthOnly = false;
@@ -70,7 +70,7 @@ struct CameraRay {
 /// Transmittance behind a surface at depth z (camera space), by channel, 0 to 1.
 struct DepthStep {
     float z;
-    Color left;                                 ///< by channel
+    Color transmittance;                        ///< by channel
     const scene::Attributes* surface = nullptr; ///< of the surface that the light meets there; null: a medium. Lives as the world
 };
 
@@ -79,11 +79,12 @@ struct SampleResult {
     Color color{0}, opacity{0};       ///< premultiplied; color includes light from behind
     float z = 1e38f, zSecond = 1e38f; ///< camera depth of the first and second surface; 1e38 = none
     std::vector<float> aovs;          ///< flattened in the order of Settings::outputs
-    std::vector<DepthStep> left;      ///< for rays with `depths`: transmittance behind each surface, in order; 1 before the first
-    std::vector<Color> parts;         ///< of `color`, by Settings::lightPaths; empty: none requested
-    Color albedo{0};                  ///< with Settings::firstSeen: albedo of the lobes at the surfaces seen first
-    Vec3 normal{0.f};                 ///< their unit normals, camera space, weighted by coverage
-    Color behind{0};                  ///< for rays with a given hit: transparency there; the ray does not continue
+    std::vector<DepthStep>
+        transmittance;        ///< for rays with `depths`: transmittance behind each surface, in order; 1 before the first
+    std::vector<Color> parts; ///< of `color`, by Settings::lightPaths; empty: none requested
+    Color albedo{0};          ///< with Settings::firstSeen: albedo of the lobes at the surfaces seen first
+    Vec3 normal{0.f};         ///< their unit normals, camera space, weighted by coverage
+    Color behind{0};          ///< for rays with a given hit: transparency there; the ray does not continue
 };
 
 } // namespace alpenglow::integrator

@@ -197,7 +197,7 @@ void ScatterRays::walkBelow(size_t b, BatchContext& c) {
         const LobeVertex* const request = s.requestAt(point);
         v_.next.goes &= ~(1u << i);
         subsurface_.walks.push_back({int(point),
-                                     request ? request->below : int32_t(subsurface_.below.size()),
+                                     request ? request->subsurface : int32_t(subsurface_.media.size()),
                                      {v_.next.weight[0][i], v_.next.weight[1][i], v_.next.weight[2][i]},
                                      c.targets[point],
                                      v_.next.vertex[i],
@@ -205,7 +205,7 @@ void ScatterRays::walkBelow(size_t b, BatchContext& c) {
                                      v_.vertices[b].energyScale[i]});
         const float* const rows = request ? nullptr : s.rows[b] + i;
         if (rows)
-            subsurface_.below.push_back(
+            subsurface_.media.push_back(
                 subsurface_.mediumOf(*s.info, c.points[point], [&](int row) { return rows[size_t(row) * size_t(s.stride)]; }));
     }
 }

@@ -15,7 +15,7 @@ namespace alpenglow::integrator {
 
 /// Whether requests can share a site: what a site holds once is the same.
 static bool shareSite(const BlockLobes& s, const LobeVertex& l) {
-    return s.number == int(l.site) && s.kind == l.kind && s.lighting == l.lobeOfShader && s.walks == (l.below >= 0) &&
+    return s.number == int(l.site) && s.kind == l.kind && s.lighting == l.lobeOfShader && s.walks == (l.subsurface >= 0) &&
            s.diffuse == (l.rays->type == RayType::Diffuse);
 }
 
@@ -83,7 +83,7 @@ size_t SingleRequests::siteOf(const LobeVertex& l, size_t next, const BatchConte
     s.lighting = l.lobeOfShader;
     s.lights = false;
     s.diffuse = l.rays->type == RayType::Diffuse;
-    s.walks = l.below >= 0;
+    s.walks = l.subsurface >= 0;
     s.requests.assign(v_.blocks * kBlock, nullptr);
     return next;
 }

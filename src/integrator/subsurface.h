@@ -69,7 +69,7 @@ private:
 
     BatchContext& c_;
     std::span<const WalkAsked> asked_;
-    std::span<const SubsurfaceMedium> below_;
+    std::span<const SubsurfaceMedium> media_;
     std::vector<Walker> walkers_, going_;
     std::vector<Exit> exits_;
 

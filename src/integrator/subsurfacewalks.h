@@ -30,7 +30,7 @@ public:
     };
     const OfShape& ofShape(const scene::Attributes&);
 
-    std::vector<SubsurfaceMedium> below; ///< for Requests::lobes
+    std::vector<SubsurfaceMedium> media; ///< for Requests::lobes
     std::vector<WalkAsked> walks;        ///< requested by the lobes of a batch; removed when these are done
     AlbedoInversions albedoInversions;   ///< of this thread
 

@@ -20,8 +20,8 @@ struct LitValues {
 /// A subsurface walk that was selected: from `point` of the batch, with its throughput to the target.
 struct WalkAsked {
     int point = 0;
-    int32_t below = -1; ///< index in SubsurfaceWalks::below
-    Color weight;       ///< by channel
+    int32_t subsurface = -1; ///< index in SubsurfaceWalks::media
+    Color weight;            ///< by channel
     AccumulatorId target = shading::kNoAccumulator;
     uint32_t vertex = 0; ///< random number key
     int32_t share = -1;  ///< Accumulator::aovSplits
@@ -63,8 +63,8 @@ struct LobeVertex {
     Color tint{1};                                  ///< of the environment map
     const TraceSite* trace = nullptr;               ///< null: no trace()
     shading::Fade fade;                             ///< attenuation of distant hits
-    int32_t below = -1; ///< SubsurfaceWalks::below, for a subsurface() whose rays walk; -1: other lobes
-    float indirect = 1; ///< factor of its rays
+    int32_t subsurface = -1; ///< SubsurfaceWalks::media, for a subsurface() whose rays walk; -1: other lobes
+    float indirect = 1;      ///< factor of its rays
 };
 
 /// n or -n: on the side of the surface at p from which a ray in direction dir arrives.

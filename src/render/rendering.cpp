@@ -85,7 +85,7 @@ bool Job::trace(int worker, std::span<const integrator::CameraRay> in, std::span
     rays[size_t(worker)] = now;
     if (whole && !t.unfinished() && !(met && shone))
         for (const integrator::SampleResult& r : out) {
-            if (!r.left.empty() || (in[0].depthOnly && r.z < 1e38f)) met = shone = true; // depth renders need no light
+            if (!r.transmittance.empty() || (in[0].depthOnly && r.z < 1e38f)) met = shone = true; // depth renders need no light
             if (r.z < 1e38f || luminance(r.opacity) > 0) met = true;
             if (r.color.x != 0 || r.color.y != 0 || r.color.z != 0) shone = true;
         }

@@ -24,7 +24,7 @@ struct KernelRun {
     bool forShadow = false;                     ///< the kernel returns opacity for shadow rays
     bool again = false;                         ///< a repeated run: prints and bakes nothing
     bool dark = false;                          ///< loops over lights are empty
-    bool below = false;                         ///< exits of subsurface walks: points that gather light, without a kernel
+    bool subsurface = false;                    ///< exits of subsurface walks: points that gather light, without a kernel
     bool between = false;                       ///< points on ray segments inside a medium
     std::shared_ptr<const KernelRun> displaced; ///< run of the displacement shader at these points, if its outputs are queried
     const KernelRun* surface = nullptr;         ///< while an atmosphere's kernel runs: the run of the surface behind it

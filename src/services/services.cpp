@@ -15,7 +15,7 @@ void KernelRun::forget() {
     lit = nullptr;
     volume = nullptr;
     lightOutput = nullptr;
-    below = between = again = dark = forShadow = false;
+    subsurface = between = again = dark = forShadow = false;
     displaced.reset();
     for (LightLoop& loop : loops) loop.reset(-1);
     ambient.clear();

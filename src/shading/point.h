@@ -100,11 +100,11 @@ struct FreeFlight {
     Color extinction{0};     ///< per unit of distance, by channel
     double chance[3] = {};   ///< mixture weights of the channels' densities, normalised
     /// Transmittance over a distance, by channel.
-    Vec3d leftAt(float at) const;
+    Vec3d transmittanceAt(float at) const;
     /// Density of the sampled point per unit of length, at a point with this transmittance.
     double density(const Vec3d& left) const;
     /// The same at a distance.
-    double density(float at) const { return density(leftAt(at)); }
+    double density(float at) const { return density(transmittanceAt(at)); }
     bool operator==(const FreeFlight&) const = default;
 };
 

@@ -129,7 +129,7 @@ struct Homogeneous {
     /// Per unit of length, by channel.
     Color extinction() const { return absorption + scattering; }
     /// Transmittance over a distance, by channel.
-    Color left(float way) const;
+    Color transmittance(float way) const;
 };
 
 /// A bound volume shader: of an atmosphere, or of the interior or exterior of primitives.

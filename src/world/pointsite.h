@@ -22,7 +22,7 @@ struct PointSite {
     texture::Handle map = nullptr;                                    ///< "environmentmap"
     Matrix toMap;                                                     ///< current space to "environmentspace"
     int value = -1, environment = -1, openTowards = -1, blocked = -1; ///< first rows
-    SubsurfaceSite below;                                             ///< of subsurface()
+    SubsurfaceSite subsurface;                                        ///< of subsurface()
 };
 
 /// Whether a call reads point clouds.

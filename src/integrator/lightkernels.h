@@ -20,7 +20,7 @@ class ShadowRays;
 struct StageSet;
 
 /// Runs the kernels of lights.
-class LightKernels final : Stage, public Tracer {
+class LightKernels final : Stage, public LightEvaluator {
 public:
     explicit LightKernels(const StageSet&);
     /// Light from one light at the queries; for area lights `samples[i]` is the point on the emitter.

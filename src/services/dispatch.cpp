@@ -55,7 +55,7 @@ void Services::sumAmbient(const ServiceCall& call) {
             laneOf.push_back(lane);
         });
         std::vector<LightValue> v(q.size());
-        tracer_->evaluateLight(l, q, v, {});
+        lightEvaluator_->evaluateLight(l, q, v, {});
         for (size_t i = 0; i < q.size(); ++i)
             for (int k = 0; k < 3; ++k) call.out[size_t(k) * size_t(call.lanes) + size_t(laneOf[i])] += v[i].Cl[k];
     }

@@ -2,8 +2,8 @@
 
 namespace alpenglow::services {
 
-Services::Services(const WorldImpl& world, Diagnostics& d, Tracer* tracer, bool building)
-    : world_(&world), diagnostics_(d), tracer_(tracer), building_(building), seed_(world.settings().seed),
+Services::Services(const WorldImpl& world, Diagnostics& d, LightEvaluator* lights, bool building)
+    : world_(&world), diagnostics_(d), lightEvaluator_(lights), building_(building), seed_(world.settings().seed),
       noSample_(Sampler(seed_, 0, 0), 0) {}
 
 void KernelRun::forget() {

@@ -16,9 +16,9 @@ class Texture;
 namespace alpenglow::services {
 
 /// Interface to light transport for services.
-class Tracer {
+class LightEvaluator {
 public:
-    virtual ~Tracer() = default;
+    virtual ~LightEvaluator() = default;
     /// Light arriving at queries (ShadePoint::Ps) from one light. For area lights P is the point on the emitter.
     virtual void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue>, const LightCall&) = 0;
     /// Attenuates the values of one light by occlusion between it and the points that it lights: point `first` + laneOf[i] of a
@@ -54,9 +54,9 @@ struct ServiceMemo {
 /// The services of one thread, with its caches.
 class Services {
 public:
-    /// `tracer`: null if there are no lights. building: the world is not complete, so answers that may change are not kept, and
+    /// `lights`: null if there are no lights. building: the world is not complete, so answers that may change are not kept, and
     /// there are no photon maps yet.
-    Services(const WorldImpl&, Diagnostics&, Tracer* tracer, bool building = false);
+    Services(const WorldImpl&, Diagnostics&, LightEvaluator* lights, bool building = false);
     /// Answers a call of any kind except requests for light. Rows are those of rsl::ServiceFn.
     void service(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     // illuminance loops, as in rsl::KernelCall (lightloop.cpp).
@@ -224,7 +224,7 @@ private:
 
     const WorldImpl* world_;
     Diagnostics& diagnostics_;
-    Tracer* tracer_;
+    LightEvaluator* lightEvaluator_;
     const bool building_;
     SeedKey seed_;
     SampleNumbers noSample_; ///< for points without a camera sample

@@ -81,7 +81,7 @@ template <class T> AL_INLINE T grooves(const Facet<T>& f) {
     const T k = divide(f.nh * vf(2), f.oh);
     return smaller(T(vf(1)), smaller(k * f.no, k * f.nl));
 }
-/// Roughness to exponent (seed): roughness^-3.5 - 1.
+/// Roughness to exponent: roughness^-3.5 - 1 (docs/design/rsl.md).
 template <class T> AL_INLINE T exponentOf(const T& roughness) { return positive(power(sane(roughness), T(vf(-3.5f))) - vf(1)); }
 
 } // namespace alpenglow::shadeops::AL_NAMESPACE

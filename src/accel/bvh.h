@@ -65,6 +65,7 @@ public:
         static int cornerAt(size_t triangle, int corner) { return int(32 * (triangle & 1) + 9 * (triangle >> 1)) + 3 * corner; }
         /// The index of a corner among the vertices of the leaf.
         uint32_t vertex(uint32_t triangle, int corner) const { return uint32_t(corners >> cornerAt(triangle, corner)) & 7; }
+        /// A vertex, in the space of the tree.
         Vec3 point(uint32_t v) const { return {p[0][v], p[1][v], p[2][v]}; }
     };
     static_assert(sizeof(Node) == 128 && sizeof(Leaf) == 128);
@@ -106,12 +107,15 @@ public:
     /// Number of triangles left out because a corner is beyond kFarthest; and a shape that has some.
     size_t beyond() const { return beyond_; }
     uint32_t beyondOf() const { return beyondOf_; }
+    /// The tree: the first node is the root; leaves by the index in Child.
     const Node* nodes() const { return nodes_.data(); }
     const Leaf* leaves() const { return leaves_.data(); }
+    /// There is nothing in it.
     bool empty() const { return nodes_.empty(); }
     /// Up to `most` subtrees that together contain the complete tree, with their boxes; the largest are divided first. Only the
     /// root for a tree with keys.
     std::vector<std::pair<Child, geometry::Bounds>> opened(size_t most) const;
+    /// Of all contents; empty if there are none.
     const geometry::Bounds& bounds() const { return bounds_; }
     bool reachesInto(std::span<const geometry::Plane>) const; ///< Accel::reachesInto(): by the boxes of its leaves
     /// Memory in bytes.
@@ -121,6 +125,7 @@ public:
     }
     /// What a child of kind kExact means.
     const Exact& exact(uint32_t index) const { return exact_[index]; }
+    /// All exact children, by the same index.
     const Exact* exacts() const { return exact_.data(); }
     /// Capsules around exact primitives, by the same index; null: none. Infinite radius: unknown.
     const geometry::Capsule* capsules() const { return capsules_.empty() ? nullptr : capsules_.data(); }

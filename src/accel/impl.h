@@ -80,6 +80,7 @@ struct Accel::Impl {
     std::vector<uint32_t> formNumbers;        ///< by shape: index in forms, or kNone; empty: no forms
     /// Fills `forms`.
     void readyForms();
+    /// The equation of a shape; null: it has none.
     const geometry::QuadricForm* formOf(uint32_t s) const {
         return formNumbers.empty() || formNumbers[s] == kNone ? nullptr : &forms[formNumbers[s]];
     }
@@ -118,6 +119,7 @@ struct Accel::Impl {
     void nearestInBlocks(std::span<const Ray>, std::span<Hit>) const;
     /// Accel::occluded() by blocks.
     void anyInBlocks(std::span<const Ray>, std::span<uint8_t>) const;
+    /// Search one block; `rays`: those of it that count, as bits.
     void nearestInBlock(const DirectRays&, uint32_t rays, const float* time, Hit*) const;
     void anyInBlock(const DirectRays&, uint32_t rays, const float* time, uint8_t*) const;
 
@@ -160,6 +162,7 @@ struct Accel::Impl {
         q.best = {t, s, prim, b1, b2};
         return true;
     }
+    /// The same where the normal is that of the shape at the hit.
     bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2) const {
         return take(q, s, prim, t, b1, b2, [&] { return dot(shapes[s]->hitNormal(prim, b1, b2), Vec3d(q.ray->dir)); });
     }
@@ -248,6 +251,7 @@ struct Accel::Impl {
     };
     /// An instanced geometry without a tree; others are traversed (bvh_walk.inc).
     bool intersectPlaced(Query&, uint32_t s) const;
+    /// One triangle of an instanced geometry.
     bool intersectInside(Query&, const Inside&, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
     bool intersectInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
     /// sameCrossing() for corners in the space of the geometry.
@@ -259,6 +263,7 @@ struct Accel::Impl {
     bool occludedOne(const Ray&) const;
     /// plain: with the baseline instruction set.
     void walkNearest(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
+    /// The same for coherent rays, and for occlusion.
     void walkNearestTogether(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
     void walkAny(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
 };

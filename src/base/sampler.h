@@ -87,6 +87,7 @@ public:
 
     /// The key of this sample for NumberBlock: a stream is its site twice, with kSingle added for one number.
     static constexpr uint32_t kSingle = 1;
+    /// For NumberBlock: the key of pixel and replica in two words, and the index of the point in its sequence.
     uint32_t low() const { return low_; }
     uint32_t high() const { return high_; }
     uint32_t index() const { return index_; }

@@ -15,6 +15,7 @@ template <class T> struct Vec3T {
     template <class U> constexpr explicit Vec3T(const Vec3T<U>& o) : x(T(o.x)), y(T(o.y)), z(T(o.z)) {}
     /// Component i: 0 is x, 1 is y, all others z.
     constexpr T& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+    /// Component i, as above.
     constexpr T operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
     /// Component by component.
     constexpr Vec3T operator-() const { return {-x, -y, -z}; }

@@ -22,6 +22,7 @@ public:
     /// Means of the internal reflectance over the hemisphere: 2 and 3 times the integrals of F cos and F cos^2.
     double first() const { return first_; }
     double second() const { return second_; }
+    /// As given to the constructor.
     double index() const { return index_; }
 
 private:

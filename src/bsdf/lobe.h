@@ -60,6 +60,7 @@ struct LobeKind {
     float pdf(const LobeParams&, Vec3 w) const;
     /// False: there is no direction.
     bool sample(const LobeParams&, Vec2 u, Vec3& w) const;
+    /// About the fraction that the lobe reflects, for selection; half its width in radians, for footprints.
     float albedo(const LobeParams&) const;
     float spread(const LobeParams&) const;
 };
@@ -96,6 +97,7 @@ public:
     struct Place {
         int kind = 0, at = 0; ///< index of the kind, and of the lobe among those of its kind
     };
+    /// Empty.
     BsdfBatch();
     /// Removes all lobes; memory is kept.
     void clear();

@@ -38,6 +38,7 @@ struct EnvironmentFolders {
         return i == folders.end() ? std::vector<std::string>() : i->second;
     }
 };
+/// Reads the environment of this process.
 EnvironmentFolders environmentFolders();
 
 } // namespace alpenglow::cli

@@ -101,6 +101,7 @@ std::string formatted(const std::string& text, size_t tab, bool spaces);
 
 /// "file:///a%20b.sl" to "/a b.sl"; other schemes give "".
 std::string pathOf(const std::string& uri);
+/// The reverse.
 std::string uriOf(const std::string& path);
 
 } // namespace alpenglow::cli

@@ -11,6 +11,7 @@ std::string manPage(const ProgramText&, const std::string& command);
 struct VariableText {
     const char *name, *help; ///< its name; a sentence
 };
+/// All of them, in the order of the manual.
 const std::vector<VariableText>& environmentVariables();
 
 } // namespace alpenglow::cli

@@ -38,6 +38,7 @@ inline CLI::Validator wholeBetween(double least, double most) {
 inline CLI::Validator positive(const std::string& example = "") {
     return numberCheck([](double n) { return n > 0; }, "a number above 0" + (example.empty() ? "" : ", for example " + example));
 }
+/// Accepts numbers from 0 on.
 inline CLI::Validator notNegative() {
     return numberCheck([](double n) { return n >= 0; }, "a number that is 0 or more");
 }

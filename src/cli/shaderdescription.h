@@ -71,6 +71,7 @@ ShaderDescription describe(rsl::ShaderCompiler&, const std::shared_ptr<const rsl
 
 /// The description for programs and for people.
 nlohmann::ordered_json descriptionJson(const ShaderDescription&);
+/// The same as text.
 std::string descriptionText(const ShaderDescription&);
 
 } // namespace alpenglow::cli

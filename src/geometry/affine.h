@@ -20,6 +20,7 @@ struct Affine {
     Vec3d point(const Vec3d& p) const { return vector(p) + o; }
     /// v times the transpose of the 3x3 part. Of the inverse: a normal.
     Vec3d across(const Vec3d& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
+    /// Of the 3x3 part.
     double determinant() const { return dot(cross(x, y), z); }
     /// Returns false if there is none.
     bool inverse(Affine& out) const {

@@ -40,6 +40,7 @@ public:
     bool read(int leaves, const std::vector<int>& code, const std::vector<float>& numbers,
               const std::vector<std::string>& strings, const Matrix& objectToWorld, const SourcePlace&, Diagnostics&,
               bool moves = false);
+    /// The tape of the request, and its leaves by number.
     const BlobTape& whole() const { return tape_; }
     const std::vector<BlobLeaf>& leaves() const { return leaves_; }
 

@@ -29,9 +29,11 @@ public:
     int points() const { return n_; }
     /// Pieces that dicing does not cross; also the count of uniform values along the direction.
     int patches() const { return patches_; }
+    /// Whether the direction is periodic.
     bool wrap() const { return wrap_; }
     /// Count of varying values: one a patch border.
     int varyings() const { return wrap_ ? patches_ : patches_ + 1; }
+    /// The points that act at x, 0 to 1.
     BasisSpan at(double x) const;
     /// Whether no weight is negative, so that the surface is within the convex hull of its control points.
     bool convex() const;
@@ -49,6 +51,7 @@ public:
         int patch;
         double at, slope; ///< 0 to 1, and its derivative by x
     };
+    /// For x from 0 to 1.
     Cell cell(double x) const;
 
 private:

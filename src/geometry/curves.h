@@ -23,6 +23,7 @@ struct ScalarJet {
 /// The product, by the product rule.
 Jet cross(const Jet&, const Jet&);
 Jet operator*(const ScalarJet&, const Jet&);
+/// The sum.
 Jet operator+(const Jet&, const Jet&);
 /// Unit vectors; of a vanishing one zero.
 Jet unit(const Jet&);
@@ -103,11 +104,13 @@ class CurveSet {
 public:
     /// Reports errors; returns false if there is nothing to draw.
     bool take(const ShapeSource&, Diagnostics&);
+    /// Number of segments of all curves.
     uint32_t segments() const { return uint32_t(curveOf_.size()); }
     struct Place {
         uint32_t face;         ///< curve of the request
         uint32_t local, count; ///< segment of its curve, and how many it has
     };
+    /// Where a segment is in the request.
     Place place(uint32_t segment) const {
         const Row& r = rows_[curveOf_[segment]];
         return {r.face, segment - r.segment, (&r)[1].segment - r.segment};
@@ -120,9 +123,11 @@ public:
     Vec3d axis(uint32_t segment) const;
     /// Prefetches the data for load().
     void fetch(uint32_t segment) const;
+    /// Number of values of a class.
     size_t classCount(scene::Class) const;
     /// Weights at f of a segment; `dv` with respect to v of the complete curve.
     int weights(scene::Class, uint32_t segment, double f, Weight w[16]) const;
+    /// Of the request.
     bool linear() const { return linear_; }
     bool periodic() const { return periodic_; }
     /// Whether the same curves of both are drawn, with the same segments.
@@ -133,6 +138,7 @@ public:
         return linear_ == o.linear_ && periodic_ == o.periodic_ && step_ == o.step_ && !normal_ == !o.normal_ &&
                std::equal(rows_.begin(), rows_.end(), o.rows_.begin(), o.rows_.end(), same);
     }
+    /// Curves are flat and have a direction of their own.
     bool hasNormals() const { return normal_ != nullptr; }
 
 private:

@@ -13,6 +13,7 @@ struct DiceCost {
 
 /// Seconds of a processor that this thread has had.
 double threadSeconds();
+/// Of a shape that took so many seconds.
 DiceCost costOf(const Shape&, double seconds);
 /// Reports the most expensive primitive, if it exceeds the threshold of DiceOptions.
 void noteCosts(const std::vector<ShapeRef>&, const std::vector<DiceCost>&, const DiceOptions&, Diagnostics&);

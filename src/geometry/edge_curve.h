@@ -23,11 +23,13 @@ public:
     Vec3d at(double t) const { return along(reversed_ ? 1 - t : t); }
     /// The same from the first end, optionally with the first two derivatives.
     Vec3d along(double c, Vec3d* slope = nullptr, Vec3d* bend = nullptr) const;
+    /// It is a line.
     bool straight() const { return kind_ == Kind::Line; }
     /// All of it is one point.
     bool collapsed() const { return collapsed_; }
     /// Minimum number of segments that keep its two sides apart: 1, or more if it turns around.
     double fewest() const { return fewest_; }
+    /// It is evaluated from its other end.
     bool reversed() const { return reversed_; }
 
 private:

@@ -27,6 +27,7 @@ public:
     /// Makes this the first key; `later` are shapes of the same class from the primitive at later times. times: one more, from 0
     /// to 1. Returns false, without effect, if their pieces do not match.
     bool join(std::vector<ShapeRef> later, std::vector<float> times, Diagnostics&);
+    /// Whether join() has made it the first of several keys.
     bool joined() const { return !later_.empty(); }
 
     using Shape::exactHits;

@@ -83,6 +83,7 @@ public:
         uint32_t face = 0; ///< index
         int corner = 0;    ///< 0 to 3
     };
+    /// Of a piece below pieces().
     PieceOf pieceOf(uint32_t piece) const;
     /// The first piece of a face.
     uint32_t firstPiece(uint32_t face) const { return firstPiece_.empty() ? face : firstPiece_[face]; }

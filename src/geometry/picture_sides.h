@@ -33,6 +33,7 @@ public:
     Unseen(const Shape&, const DiceOptions&);
     /// Whether nothing of the shape may be omitted.
     bool none() const { return !sides_; }
+    /// Whether no ray reaches what lies in the box, camera space.
     bool operator()(Bounds) const;
     void lookAnywhere() { sides_ = nullptr; } ///< none() from now on
 

@@ -133,6 +133,7 @@ public:
     // ---- intersection -------------------------------------------------------------------------------------------------------
     /// True: rays meet exactHits(). False: rays meet mesh(), hits are (triangle, b1, b2).
     bool exact() const { return mesh_.vertices == 0; }
+    /// In camera space; empty before dice().
     const TriMesh& mesh() const { return mesh_; }
     /// Exact shapes: number of primitives with boxes of their own (curves and points have many); prim of a hit.
     virtual uint32_t exactPrims() const { return 1; }

@@ -43,6 +43,7 @@ public:
     struct Node {
         double u, v, weight; ///< in the unit square; weights add up to the kept area
     };
+    /// The same for every call.
     std::vector<Node> nodes() const;
 
 private:

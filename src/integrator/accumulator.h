@@ -23,6 +23,7 @@ public:
     /// Discards the camera sample of a ray that carries a value that is not finite. `what` made the value, at `place`; each place
     /// is reported once.
     void notFinite(const PathRay*, const std::string& what, const SourcePlace& place);
+    /// Reports such a value once, with the shader that made it and the sample that repeats it; the sample is dropped.
     void notFinite(const PathRay* ray, const char* what, const ShaderInstance* of);
     void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< The value came from this call site
     /// Sums of a target whose trace() asks for them (TraceSums); else null.

@@ -65,6 +65,7 @@ struct BatchContext : KernelRun {
     }
     /// Removes points before the kernel runs: move() each kept point to a lower index, then keepFirst().
     void move(size_t from, size_t to);
+    /// Removes all points from this index on.
     void keepFirst(size_t count);
     size_t emitted = 0; ///< requests emitted so far, over all points
     size_t frame = 0;   ///< bytes of the frame of the last strip started

@@ -47,6 +47,7 @@ struct BlockLobes {
     const RayKind& raysAt(size_t point) const { return requests.empty() || !requests[point] ? *rays : *requests[point]->rays; }
     /// By point, for further calls of a call site: how many of the earlier ones had a weight.
     std::vector<uint32_t> occurrence;
+    /// As `occurrence`; 0 where it is empty.
     uint32_t occurrenceAt(size_t point) const { return occurrence.empty() ? 0 : occurrence[point]; }
 
     /// Makes room for a batch and forgets the previous one: no lobe is asked for.

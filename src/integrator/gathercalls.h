@@ -22,6 +22,7 @@ struct GatherSent {
     std::vector<float> values;
     /// By entry of GatherSite::sent, where its values end.
     std::vector<size_t> ends;
+    /// The value of an entry of GatherSite::sent.
     shading::GivenValue value(size_t sent) const;
 };
 

@@ -59,6 +59,7 @@ public:
 
     /// PathRay::lobePdf and trail of the ray that a mirror reflects when hit by `from`.
     float pdfBehindMirror(const PathRay& from) const;
+    /// Trail of the ray behind a mirror that `from` has hit.
     static uint8_t trailBehindMirror(const PathRay& from) {
         if (!(from.trail & shading::kTrailSpread)) return 0;
         return uint8_t(shading::kTrailSpread | shading::kTrailMirrored |

@@ -34,6 +34,7 @@ public:
     bool seesNothing(std::span<const geometry::Plane>) const;
     /// Whether a ray of the last trace() reached the bound of a deferred procedural; its results are then undefined (deferred.h).
     bool unfinished() const;
+    /// Of all calls so far.
     const Counters& counters() const;
 
 private:
@@ -75,6 +76,7 @@ public:
         /// order of their numbers. Returns false if stopped; `out` is then undefined.
         bool emit(uint32_t pass, uint32_t first, uint32_t count, double emitted, std::vector<StoredPhoton>& out,
                   const StopFlag* stop);
+        /// Of all calls so far.
         const Counters& counters() const;
         /// Distance that lights, and surfaces hit by its photons, move while the shutter is open.
         float travel() const;

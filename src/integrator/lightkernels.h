@@ -32,6 +32,7 @@ public:
     void takeShadowSays(LightValue&, const BoundLight&, float radius, float samples);
     /// Probability that a light is among those sampled at a point `at` of the binding, after `bounces` bounces.
     float chanceOf(int light, int binding, const Vec3& at, int bounces) const;
+    /// The world of the frame.
     const WorldImpl& world() const { return world_; }
 
 private:

@@ -13,6 +13,7 @@ struct LightNumbers {
 };
 /// Whether a light uses LightNumbers::pair. `path`: under the hider path, which samples cones.
 inline bool takesPair(const BoundLight& l, bool path) { return l.kind == LightKind::Area || l.isSky() || (l.cone && path); }
+/// Whether it uses LightNumbers::choose.
 inline bool takesChoice(const BoundLight& l) { return l.kind == LightKind::Area && l.emitter->chooses(); }
 
 /// Copies the inputs of the light's kernel from the lit point (Ps, Ns, I, E, du, dv, time) to a query. Current space.

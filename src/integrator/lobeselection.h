@@ -17,6 +17,7 @@ public:
     LobeSelection(const StageSet&, const VertexStages&);
     /// Computes what lobes need for queries, and which ones sample lights.
     void prepare();
+    /// Computes the probabilities of following the rays of the lobes.
     void select(const BatchContext&);
     /// Adds to the output "albedo" (albedo.cpp).
     void showAlbedo(BatchContext&);

@@ -34,6 +34,7 @@ public:
         int samples;
         float bias;
     };
+    /// Computed at first use; null: no shape.
     const OfShape& ofShape(const geometry::Shape*);
     /// Records whether the calling surface itself occludes the hemisphere about a unit normal.
     void noteTurnedAway(const BatchContext&, const SiteInfo&, int point, const Vec3& normal);

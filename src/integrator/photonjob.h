@@ -42,10 +42,12 @@ public:
     /// Lights that emit by their attributes: those with "emitphotons" 1; if no light of the frame sets it, all others except what
     /// PhotonUse::all excludes (false: only lights that set it).
     EmissionPlan(LightKernels&, const PhotonUse&);
+    /// Whether no light emits; the lights that do.
     bool empty() const { return lights_.empty(); }
     const std::vector<Light>& lights() const { return lights_; }
     /// Whether anything moves that photons may hit or leave; distance that lights move while the shutter is open.
     bool moves() const;
+    /// The longest distance that a light moves, camera space.
     float travel() const;
     /// By light of the world: whether it emits.
     std::vector<uint8_t> emits() const;

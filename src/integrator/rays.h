@@ -85,6 +85,7 @@ struct ShadowSegment {
     Vec3 origin, dir;   ///< camera space; dir: unit
     float distance = 0; ///< of the other end
 };
+/// From a to b, as above.
 ShadowSegment segmentBetween(const Vec3& a, const Vec3& b, const Vec3& at, const geometry::SurfacePoint* s);
 
 /// Number of float rows of all arguments of a call.

@@ -35,6 +35,7 @@ public:
     /// Stores extras for one ray, as PathRay::extra; free them with freeExtra() after its hit is shaded. Returns -1 for default
     /// values.
     int32_t newExtra(const RayExtra&);
+    /// Free the extras of the rays of a batch, or of one ray; drop all.
     void freeExtras(BatchContext&);
     void freeExtra(const PathRay& r) {
         if (r.extra >= 0) freeExtras_.push_back(r.extra);

@@ -43,6 +43,7 @@ public:
                          AccumulatorId);
     /// Radiance of the environment map of a trace() in direction w (unit, current space).
     Color mapTowards(const TraceSite&, const Vec3& w, float spread) const;
+    /// Drops what a call that was interrupted has left.
     void clear();
 
     std::vector<LobeVertex> lobes; ///< requested so far

@@ -29,6 +29,7 @@ public:
     bool resume(Sched&, std::span<const shading::TargetValue> results) override;
     /// After start or resume: either ends (returns true), or registers its request with the stage and waits.
     bool advance(Sched&, std::unique_ptr<Sched::Strip> self);
+    /// The batch.
     const std::shared_ptr<BatchContext>& context() const { return c_; }
     /// Makes its request: lobes and shadow rays. Keeps its targets held.
     void ask(Sched&);
@@ -37,6 +38,7 @@ public:
     /// The pending request, for a caller that makes it in place of ask(); noteAsked() then records that. lobes: lanes that send
     /// rays, one each.
     StripRequest request() const { return {site_, first_, lanes_, gather_ != nullptr, &m_, asked_.data()}; }
+    /// Counts rays that lobes of the strip request.
     void noteAsked(uint64_t lobes);
 
 private:

@@ -21,6 +21,7 @@ public:
     void request(BatchContext&, const SiteInfo&, const ShadePoint&, const std::function<float(int)>& row, LobeVertex&);
     /// Follows the walks that a batch has requested.
     void walk(BatchContext&, Sched&);
+    /// Drops the walks that are requested.
     void clear();
     /// Attribute "subsurface" of a shape. Shapes of the same group bound one inside: shapes that give the same name, or share
     /// attributes.
@@ -28,6 +29,7 @@ public:
         using SubsurfaceValues::SubsurfaceValues;
         int group = 0;
     };
+    /// Computed at first use.
     const OfShape& ofShape(const scene::Attributes&);
 
     std::vector<SubsurfaceMedium> media; ///< for Requests::lobes

@@ -37,6 +37,7 @@ public:
     SurfaceShading& shading;
     /// Returns a finished strip's memory and batch to their pools.
     StripMemory takeMemory();
+    /// For the next strip.
     void giveBack(StripMemory, std::shared_ptr<BatchContext>);
     std::vector<KernelStrip*> waiting; ///< with unprocessed requests
     /// A path had so many bounces.

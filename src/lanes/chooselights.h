@@ -42,6 +42,7 @@ AL_INLINE void loadRows(const void* const (&of)[kW], vu (&row)[16]) {
         for (int k = 0; k < kW; ++k) row[first + k] = square[k];
     }
 }
+/// The same bits as floats; complete nodes from the addresses of LightNode.
 AL_INLINE vf floatsOf(vu v) { return __builtin_bit_cast(vf, v); }
 AL_INLINE NodeLanes loadNodes(const void* const (&of)[kW]) {
     vu row[16];
@@ -86,6 +87,7 @@ static vd towards(const void* const (&of)[kW], const V3& at) {
     turn(c, rootOf(least0(1 - c * c)), cosine, sine);
     return d2 > radius2 ? (cosine < 0 ? vd(0) : cosine) : vd(1);
 }
+/// Whether any lane is set.
 AL_INLINE bool anyOf(vm m) { return __builtin_reduce_or(m) != 0; }
 
 /// Descents in the tree for all points: current node, its share, start in the cumulative probabilities, and teeth of the comb
@@ -124,7 +126,9 @@ struct Choosing {
     Ways& ways;            ///< scratch
     Children& children;    ///< scratch
 };
+/// Probability that a light with this share is chosen.
 AL_INLINE vd probability(const LightTree& t, vd share, vd blind) { return t.wanted * (t.seeing * share + blind); }
+/// Appends the light of a leaf to the choices, with probability p.
 AL_INLINE void choose(Choosing& c, int32_t leaf, int lane, double p) {
     c.to[c.count++] = {~leaf, lane, float(1.0 < p ? 1.0 : p)};
 }
@@ -138,6 +142,7 @@ AL_INLINE void goInto(Choosing& c, int32_t next, int lane, double share, double 
     for (int q = 0; q < 3; ++q) w.at[q][i] = c.P[q][lane];
     w.random[i] = c.random[lane], w.share[i] = share, w.begin[i] = begin, w.teeth[i] = teeth;
 }
+/// As many doubles as there are lanes.
 AL_INLINE vd loadDoubles(const double* from) {
     vd v;
     __builtin_memcpy(&v, from, sizeof v);

@@ -27,6 +27,7 @@ AL_INLINE D3 cross(const D3& a, const D3& b) { return {a.y * b.z - a.z * b.y, a.
 AL_INLINE hd rootOf(hd x) { return __builtin_elementwise_sqrt(x); }
 /// Root of a value that rounding may have made negative.
 AL_INLINE hd rootAbove(hd x) { return rootOf(x > 0 ? x : hd(0)); }
+/// By lane, as of Vec3d and of the standard library; wide() and storeNarrow() convert from and to floats.
 AL_INLINE hd length(const D3& a) { return rootOf(dot(a, a)); }
 AL_INLINE D3 choose(hm m, const D3& a, const D3& b) { return {m ? a.x : b.x, m ? a.y : b.y, m ? a.z : b.z}; }
 AL_INLINE D3 normalize(const D3& a) {
@@ -61,6 +62,7 @@ struct SeenLanes {
     hd angle[FlatEmitter::kMost], total; ///< solid angles, steradians: of each triangle, and their sum
     D3 way[3 * FlatEmitter::kMost];      ///< unit, toward the corners
 };
+/// Fills s; returns the points that see the lamp by solid angle.
 AL_INLINE hm seeLamp(const FlatEmitter& e, const D3& from, SeenLanes& s) {
     hm seen = isNear(e, from);
     for (int i = 0; i < e.cornerCount; ++i) {
@@ -142,6 +144,7 @@ struct alignas(64) PlaceRows {
     double b1[kBlock], b2[kBlock], total[kBlock]; ///< total: solid angle; 0: uniform by area
     int64_t triangle[kBlock];                     ///< of the emitter
 };
+/// Doubles of half the lanes, from p on; the points of a block.
 AL_INLINE hd loadHalf(const double* p) {
     hd v;
     __builtin_memcpy(&v, p, sizeof v);

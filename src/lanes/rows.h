@@ -51,6 +51,7 @@ AL_INLINE vm finite(vf x) { return (bitsOf(x) & 0x7f800000u) != 0x7f800000u; }
 struct V3 {
     vf x, y, z; ///< by lane
 };
+/// Three rows from a block, or rows `stride` floats apart; operators and functions as of Vec3, by lane.
 AL_INLINE V3 load3(const Row* r, int at) { return {load(r[0] + at), load(r[1] + at), load(r[2] + at)}; }
 AL_INLINE V3 load3(const float* rows, int stride) { return {load(rows), load(rows + stride), load(rows + 2 * stride)}; }
 AL_INLINE void store3(Row* r, int at, const V3& v) {
@@ -96,6 +97,7 @@ AL_INLINE vf stepAway(vf x, vf by) {
     const vm goes = (by != 0) & (by == by) & (absLanes(x) < vf(__builtin_inff()));
     return __builtin_bit_cast(vf, goes ? moved : bits);
 }
+/// Of a point of a block.
 AL_INLINE V3 offsetOrigin(const V3& P, const V3& n, vf error, const V3& w) {
     const vf d = vf(2) * error;
     const V3 off = n * select(dot(w, n) >= 0, d, -d), o = P + off;

@@ -24,6 +24,7 @@ public:
     bool constant(const XmlElement& node, const std::string& name) const;
     /// The statements so far.
     const std::string& code() const { return code_; }
+    /// Warns once of something that the translation leaves out.
     void warn(const XmlElement& at, const std::string& text);
 
 private:

@@ -23,6 +23,7 @@ bool deforms(const Node&, const Mesh&, const Part&);
 struct Shape {
     std::vector<float> P, N;
 };
+/// Of one part of a node's mesh.
 Shape shapeAt(const Model&, const Pose&, int node, const Mesh&, const Part&);
 
 /// The skin that moves a mesh of a node, or kNone.

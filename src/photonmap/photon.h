@@ -18,6 +18,7 @@ inline uint32_t packUnit(const Vec3& v) {
     const auto bits = [](float c) { return uint32_t(int(std::clamp(c, -1.f, 1.f) * 32767 + (c < 0 ? -.5f : .5f)) + 32767); };
     return bits(x) << 16 | bits(y);
 }
+/// The reverse.
 inline Vec3 unpackUnit(uint32_t u) {
     float x = (float(u >> 16) - 32767) / 32767, y = (float(u & 0xffffu) - 32767) / 32767;
     const float z = 1 - std::fabs(x) - std::fabs(y);

@@ -14,6 +14,7 @@ public:
     PhotonMap() = default;
     /// The photons in order of emission.
     explicit PhotonMap(std::vector<Photon> photons);
+    /// Number of photons.
     size_t size() const { return photons_.size(); }
     std::span<const Photon> photons() const { return photons_; } ///< in the order of the tree
     /// Total power.

@@ -31,6 +31,7 @@ std::string bakeFileName(const std::string& name, bool* binary);
 bool saveBaked(const std::string& name, const Baked&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
 /// Whether the first bytes of a file are those of this format.
 bool isBaked(const std::string& path);
+/// Nothing: an error was reported.
 std::optional<Baked> loadBaked(const std::string& path, Diagnostics&, const SourcePlace& = {});
 
 /// A picture of the points with s and t in [0, 1], t downward: about as many pixels as points, each side a power of two. A pixel
@@ -41,6 +42,7 @@ struct BakedPicture {
     std::vector<float> pixels;  ///< row by row
     size_t outside = 0;         ///< points that are left out
 };
+/// Of the points of a file.
 BakedPicture pictureOf(const Baked&);
 
 } // namespace alpenglow::pointcloud

@@ -49,6 +49,7 @@ public:
     /// Calls commit(), writes all files except those of other owners, and empties the log. Returns false if a file could not be
     /// written; each is reported.
     bool write(const OutputPolicy&, Diagnostics&, FileOwners = {});
+    /// Nothing was committed.
     bool empty() const { return files_.empty(); }
     /// Size of the records in memory.
     size_t bytes() const { return bytes_; }

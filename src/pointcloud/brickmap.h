@@ -37,6 +37,7 @@ bool meanOf(double weight, std::span<const double> sums, std::span<float> out);
 /// Writes a brick map of a cloud, down to the level with cells as wide as the median disk. Returns false after an error, which is
 /// reported.
 bool saveBrickMap(const std::string& name, const PointCloud&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+/// By its first bytes; false: there is no such file.
 bool isBrickMap(const std::string& path);
 /// The directory of a brick map.
 struct BrickFacts {

@@ -32,6 +32,7 @@ inline uint32_t cellOf(double x, float corner, float side, int depth) {
     const double cell = side > 0 ? (x - double(corner)) / double(side) * cells : 0;
     return uint32_t(std::clamp(cell, 0.0, double(cells - 1)));
 }
+/// The brick that has this cell.
 inline uint32_t brickOf(double x, float corner, float side, int depth) { return cellOf(x, corner, side, depth) / kBrickSide; }
 
 /// The level with cells as wide as the median disk.

@@ -58,6 +58,7 @@ public:
     const Window& window() const { return window_; }
     /// From DepthOfField, or from Hider "raytrace" "lensDiameter".
     bool hasLens() const { return lensRadius_ > 0; }
+    /// Of Hider "raytrace"; off for others.
     const LensGrid& lensGrid() const { return lensGrid_; }
     bool stereo() const { return stereo_ != Stereo::None; } ///< a stereo pair, or one picture of it
     /// In the units of Shutter.

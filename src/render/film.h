@@ -166,6 +166,7 @@ public:
         double mean = 0;
         uint64_t least = 0, most = 0; ///< smallest and largest
     };
+    /// Of all pixels of the window.
     Samples samples() const { return samplesAfter(0); }
     /// The same, after so many further steps.
     Samples samplesAfter(uint32_t steps) const;

@@ -34,6 +34,7 @@ public:
     bool degenerate() const { return degenerate_; }
     /// Integral of the filter's negative part over that of the filter; unset if all samples have weight 1.
     std::optional<double> negativePart() const;
+    /// As given to the constructor.
     const PixelFilter& filter() const { return filter_; }
 
 private:

@@ -94,6 +94,7 @@ struct OutputPlan {
     bool needs(OutputVariable::Source) const;
     /// Whether some picture, or every picture, is a deep shadow map.
     bool anyDeep() const, onlyDeep() const;
+    /// Whether some picture is a Cryptomatte; whether some reads depth by this filter.
     bool anyMattes() const;
     bool needsDepth(DepthFilter) const;
     /// Sets the widths from the engine and names the channels of undeclared outputs. `missing`: outputs that no shader has.

@@ -13,6 +13,7 @@ public:
     PhotonPasses(Job&, std::shared_ptr<const world::World>, const integrator::PhotonUse&);
     /// The same with other diagnostics.
     PhotonPasses(Job&, std::shared_ptr<const world::World>, const integrator::PhotonUse&, Diagnostics&);
+    /// What emits the photons.
     integrator::PhotonEmission& emission() { return emission_; }
     /// Emits `count` photons of a pass and collects the stored ones. Returns false if stopped, or if more than limits::kPhotons
     /// were stored, which is reported; *emitted is then the number of photons emitted for these.

@@ -25,6 +25,7 @@ inline constexpr int kFilterKinds = 12; ///< number of kinds
 
 /// The name used in RIB: "box", "catmull-rom", ...
 const char* filterName(FilterKind);
+/// The reverse; nothing: there is no such filter.
 std::optional<FilterKind> filterByName(std::string_view name);
 
 /// A filter with its full widths, in pixels. Values are not normalised: users divide by the sum of weights.

@@ -30,7 +30,9 @@ public:
     };
     /// Sample k is in column k % nx of row k / nx. `moves`, `lens`: the dimensions needed; others keep their defaults.
     PixelNet(int nx, int ny, bool moves, bool lens);
+    /// Whether some dimension is needed.
     bool asked() const { return moves_ || lens_; }
+    /// For the pixel of a sampler; the numbers of its sample k.
     Pixel pixel(const Sampler&) const;
     Numbers sample(const Pixel&, int k) const;
 

@@ -33,6 +33,7 @@ public:
     void setScene(const std::string& path, const std::set<std::string>& read = {});
     /// For ri::ReaderOptions::defers: expands procedurals of a frame during rendering (ri::RibReader::make()).
     using MakeProcedurals = std::function<std::shared_ptr<const scene::Frame>(const scene::Frame&, std::span<const int>)>;
+    /// Unset: procedurals are expanded by the reader.
     void setProcedurals(MakeProcedurals make) { makeProcedurals_ = std::move(make); }
     /// Frames are rendered by these processes from here on. They must outlive the renderer, and report its diagnostics.
     void setProcesses(FrameProcesses&);

@@ -72,6 +72,7 @@ struct Job {
     bool trace(int worker, std::span<const integrator::CameraRay>, std::span<integrator::SampleResult>);
     /// Forwards the user's stop, or that of an error, to the tracers; returns true if there was one.
     bool pollStop();
+    /// Sums over the tracers, and over earlier worlds; seconds since the start.
     integrator::Counters counters() const;
     double elapsed() const;
 
@@ -84,6 +85,7 @@ private:
 
 /// Seconds of a monotonic clock.
 double clockSeconds();
+/// Rays of all kinds.
 uint64_t totalRays(const integrator::Counters&);
 /// The tiles of a window, in reading order.
 std::vector<Window> tilesOf(const Window&, int side = kTile);
@@ -95,6 +97,7 @@ struct PixelSample {
     int x, y;        ///< pixel
     uint32_t sample; ///< index in the pixel
 };
+/// Weights: FilmSample::weight, by sample.
 void pathRays(const Camera&, const FilterSampler&, uint64_t seed, std::span<const PixelSample>, NumberRows&,
               std::vector<integrator::CameraRay>& rays, std::vector<float>& weights);
 /// Adds samples to the film in complete passes until the range is done, the requested noise or time is reached, or the user
@@ -107,6 +110,7 @@ bool findRecords(Job&);
 
 /// The nx x ny samples of a pixel under hidden and raytrace.
 void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
+/// From the hider's parameter "jitter" and the samples per pixel.
 Jitter jitterOf(const scene::Options&, Diagnostics&);
 /// Where `hidden`, or else raytrace, shades, by the hider's parameter "shading" or Option "hidden" "shading": "micropolygon" or
 /// "sample". Reports invalid values, and raytrace with a lens or an open shutter, which cannot shade micropolygons.
@@ -136,6 +140,7 @@ public:
     void ask(int x, int y, int k);
     /// Makes the rays requested since clear(): places()[i] in its pixel and rays()[i] belong to the i-th request.
     void make();
+    /// The results of make().
     std::span<const Vec2> places() const { return places_.places(); }
     std::vector<integrator::CameraRay>& rays() { return rays_; }
 

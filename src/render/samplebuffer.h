@@ -86,12 +86,14 @@ public:
     static size_t floats(int width, int height, double maxXw, double maxYw, int samplesPerPixel, size_t aovs) {
         return size_t(width + 2 * border(maxXw)) * size_t(height + 2 * border(maxYw)) * size_t(samplesPerPixel) * (kAovs + aovs);
     }
+    /// Takes the memory, for the next buffer.
     std::vector<float> takeMemory() && { return std::move(data_); }
     /// Moves to the window below, of the same width, and keeps the samples of shared rows. Returns the first row without samples.
     int moveDown(const Window&);
 
     /// All pixels that need samples: the window and its border. It may extend beyond the picture.
     const Window& sampled() const { return sampled_; }
+    /// Nx times ny.
     int samplesPerPixel() const { return nx_ * ny_; }
     /// Raster position of a sample, pixels.
     Vec2 position(int x, int y, int k) const;
@@ -99,9 +101,11 @@ public:
     /// whose colour or opacity is not finite is dropped and counted, and false is returned; a NaN in an AOV or depth becomes 0 or
     /// "none", counted.
     bool set(int x, int y, int k, Vec2 place, const ImageSample&);
+    /// Sets sample k of a pixel; false: it is not finite and counts as "none".
     bool set(int x, int y, int k, const ImageSample&);
     /// Colour of a sample; black if there is none.
     Color color(int x, int y, int k) const;
+    /// Number of samples that set() has refused.
     uint64_t nonFinite() const { return nonFinite_; }
 
     /// The pixels of `out`, which must be inside the constructor's window. Colours, opacities and averaged AOVs: weighted by the

@@ -36,6 +36,7 @@ public:
     virtual bool writes() const { return true; }
     /// Whether the noise figures of the frame are wanted in Renderer::stats(), which takes a look at every pixel.
     virtual bool wantsNoise() const { return writes(); }
+    /// A frame begins; called by the thread that renders it.
     virtual void begin(const WatchedFrame&) {}
     /// Under path: a film to continue; null: none. The result must match this description.
     virtual std::unique_ptr<Film> filmFor(const FilmDescription&) { return nullptr; }

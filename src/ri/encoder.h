@@ -17,6 +17,7 @@ public:
     virtual void begin(std::string_view request) = 0;
     /// Numbers without brackets.
     virtual void bare(std::span<const double>, Precision) = 0;
+    /// Numbers in brackets; one text; texts in brackets; the end of the request.
     virtual void array(std::span<const double>, Precision) = 0;
     virtual void text(const std::string&) = 0;
     virtual void texts(std::span<const std::string>) = 0;
@@ -26,6 +27,7 @@ public:
 
     /// last: the stream ends, and the sink is not touched again. False: failed, now or before.
     bool handOn(bool last);
+    /// Why it failed, or ""; bytes of the stream so far.
     const std::string& failure() const { return to_->failure(); }
     uint64_t bytes() const { return sent_ + buffer_.size(); }
     Precision parameters = Precision::Float; ///< of parameter lists

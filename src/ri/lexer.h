@@ -38,6 +38,7 @@ public:
     void next(Token& out);
     /// Numbers that follow directly, up to anything else, appended to `out`: the fast way through long arrays.
     void numbers(std::vector<double>& out);
+    /// A place in the stream; that of the next byte.
     SourcePlace place(int line, int column) const { return {file_, line, column}; }
     SourcePlace here() const { return {file_, line_, int(column())}; }
     /// Keeps the line of this token at hand for lineText(): messages about a request come when the next one has been read.
@@ -47,6 +48,7 @@ public:
     }
     /// The text of `line` when it is the current or the marked one and still buffered, at most 200 bytes of it.
     std::string lineText(const SourcePlace&) const;
+    /// As given to the constructor.
     const std::string& file() const { return file_; }
 
     // For what reads ahead in the buffer (direct.h):

@@ -33,6 +33,7 @@ public:
     }
     /// Must not be empty.
     void pop() { last_ = std::shared_ptr<Link>(last_->outer); }
+    /// Whether an archive of this key is open.
     bool contains(const std::string& key) const {
         for (const Link* l = last_.get(); l; l = l->outer.get())
             if (l->key == key) return true;

@@ -19,6 +19,7 @@ public:
     };
     /// The answer that was noted for a look-up (name and search path as text); null: none, or the file has gone.
     const Found* found(const std::string& question) const;
+    /// Keeps an answer until forgetPlaces().
     void note(const std::string& question, Found answer) { found_.insert_or_assign(question, std::move(answer)); }
 
     /// The requests of a file as it is now, parsed at most once. Null: read the file in the ordinary way, because it is too large

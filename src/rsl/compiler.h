@@ -80,6 +80,7 @@ public:
         std::vector<std::string> pluginPaths; ///< where plug-ins are searched, after the folder of the shader
         std::shared_ptr<ReadLog> reads;       ///< gets every source that is read or missed; may be null
     };
+    /// With default settings, or with these.
     ShaderCompiler();
     explicit ShaderCompiler(Settings);
     ~ShaderCompiler();

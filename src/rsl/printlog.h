@@ -37,6 +37,7 @@ class PrintLog {
 public:
     /// Messages of one call at one point: a loop that prints would fill the disk. The others are counted.
     static constexpr size_t kOfOneCall = 10'000;
+    /// To: the stream of flush(). most: bytes kept until then; further messages are counted.
     explicit PrintLog(std::FILE* to = stdout, size_t most = limits::kPrintBytes) : most_(most), to_(to) {}
     ~PrintLog() { flush(); }
     PrintLog(const PrintLog&) = delete;

@@ -26,6 +26,7 @@ public:
                 const std::vector<std::string>* files);
     /// Gives the memory back; for the next run.
     void clear();
+    /// Memory in use.
     size_t bytes() const { return bytes_; }
 
 private:

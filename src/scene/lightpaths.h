@@ -58,6 +58,7 @@ public:
 
     /// The number of a label that some expression names; -1: none does.
     int label(std::string_view) const;
+    /// Whether some expression names a label.
     bool hasLabels() const { return !labels_.empty(); }
     /// The number of an event with up to two labels, by label(). Pairs of event and scattering that are none are Object.
     int symbol(PathEvent, PathScattering = PathScattering::None, int labelA = -1, int labelB = -1) const;

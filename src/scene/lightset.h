@@ -76,6 +76,7 @@ public:
     }
     /// The last one; only where there is one.
     int last() const { return runs_.back().second - 1; }
+    /// Removes all lights.
     void clear() { runs_.clear(); }
     /// Ascending, with gaps between them.
     const std::vector<Run>& runs() const { return runs_; }

@@ -18,6 +18,7 @@ struct Shutter {
     bool opens() const { return close > open; }
     /// The time of a fraction of the open shutter: 0 open, 1 close.
     double at(double part) const { return open + (close - open) * part; }
+    /// Of the frame's options.
     explicit Shutter(const Options&);
     Shutter() = default;
 };

@@ -52,6 +52,7 @@ public:
     float growth() const { return growth_; } ///< of lengths
     /// Scale factor of an area with unit normal `n`. Not for straight ones.
     float areaGrowth(const Vec3& n) const { return shear_ && dot(n, n) > 0 ? pointcloud::areaGrowth(to_, n) : growth_ * growth_; }
+    /// Nothing: the space has the angles of "current".
     const std::optional<pointcloud::Shear>& shear() const { return shear_; }
     /// The inverse of the last at().
     const Matrix& back() {

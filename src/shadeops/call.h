@@ -38,6 +38,7 @@ template <class T> AL_INLINE Triple<T> times(const Triple<T>& a, const T& k) { r
 template <class T> AL_INLINE Triple<T> mad3(const Triple<T>& a, const T& k, const Triple<T>& b) {
     return {mad(a.x, k, b.x), mad(a.y, k, b.y), mad(a.z, k, b.z)};
 }
+/// Products, a choice by lane (a where m is set), and the length, as of vectors.
 template <class T> AL_INLINE T dot(const Triple<T>& a, const Triple<T>& b) { return mad(a.x, b.x, mad(a.y, b.y, a.z * b.z)); }
 template <class T> AL_INLINE Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};

@@ -112,6 +112,7 @@ struct Shadeop {
 
 /// All shadeops, sorted by name. Built once, immutable.
 std::span<const Shadeop> allShadeops();
+/// Null: there is none of that name.
 const Shadeop* findShadeop(std::string_view name);
 
 /// Parses "float noise(point p; float w)", "type min(type x, y, ...)" is not accepted here: list generics one by one.

@@ -16,6 +16,7 @@ AL_INLINE Pair<vf> elliptic(vf u, vf first, vf second) {
     const vf x = c.a * first, y = c.b * second, l = vf(1) / rootLanes(mad(x, x, y * y));
     return {x * l, y * l};
 }
+/// log(1 - u), finite for u = 1.
 AL_INLINE vf logOfRest(vf u) { return logLanes(maxLanes(vf(1) - u, vf(1e-30f))); }
 
 /// Value of facets: colour, and density of the half vector h per solid angle of h.

@@ -23,6 +23,7 @@ AL_INLINE vf loadLanes(const float* from) {
     __builtin_memcpy(&x, from, sizeof x);
     return x;
 }
+/// Writes as many floats as there are lanes; no alignment is required.
 AL_INLINE void storeLanes(float* to, vf x) { __builtin_memcpy(to, &x, sizeof x); }
 
 /// Lanes of a block.
@@ -32,10 +33,12 @@ struct Given {
     AL_MEMBER vf number(int row) const { return loadLanes(at + row * kStride); }
     /// Three rows from this one on.
     AL_MEMBER Direction triple(int row) const { return {number(row), number(row + 1), number(row + 2)}; }
+    /// The axis, and the direction toward the viewer; unit.
     AL_MEMBER Direction axis() const { return triple(kRowAxis); }
     AL_MEMBER Direction wo() const { return triple(kRowWo); }
     /// A row that the kind's prepare() has set.
     AL_MEMBER vf own(int k) const { return number(kRowOwn + k); }
+    /// Three of these rows.
     AL_MEMBER Direction ownTriple(int k) const { return triple(kRowOwn + k); }
 };
 /// Lanes of a block that prepare() may write.
@@ -97,6 +100,7 @@ template <class Kind> static void sampleBlock(const float* block, uint32_t lanes
         out.set(kRowDrawn, select(good, vf(1), vf(0)));
     }
 }
+/// The optional members of a kind; 0 where it has none.
 template <class Kind> constexpr int traitsOf() {
     if constexpr (requires { Kind::traits; }) return Kind::traits;
     else return 0;

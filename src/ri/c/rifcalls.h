@@ -201,6 +201,7 @@ template <class R, class... A, size_t... I> RtPointer callWith(R (*f)(A...), Rif
         return std::apply(f, all);
     }
 }
+/// With the arguments read one by one.
 template <class R, class... A> RtPointer callWith(R (*f)(A...), RifArguments& a) {
     return callWith(f, a, std::index_sequence_for<A...>());
 }

@@ -37,6 +37,7 @@ public:
     Token next();
     /// The next token, which next() then returns; valid until next().
     const Token& peek();
+    /// Index of the file in the SourceSet.
     int file() const { return file_; }
     /// Later places count `line` for the line after the current one, under file index `file` (#line).
     void relocate(int file, int delta) {
@@ -44,6 +45,7 @@ public:
         if (peeked_) ahead_.place = {file, ahead_.place.line - delta_ + delta, ahead_.place.column};
         delta_ = delta;
     }
+    /// The line of the next token.
     int line() const { return line_; }
 
 private:

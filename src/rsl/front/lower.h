@@ -20,6 +20,7 @@ inline constexpr const char* kElement = "element"; ///< Expr::text of an index i
 ExprPtr use(Symbol*, Place);
 /// left = right of the same type.
 ExprPtr assign(ExprPtr left, ExprPtr right, Place);
+/// A number.
 ExprPtr floatOf(double, Place);
 /// What stands in the place of an error.
 ExprPtr broken(Place);

@@ -29,9 +29,11 @@ public:
     const std::vector<Leaf>& members(Type) const;
     /// "s->inner->x", the plain member of that number; the variable's name if it is no structure.
     std::string memberName(const Symbol&, size_t member) const;
+    /// The type of a plain member.
     Type memberType(const Symbol&, size_t member) const;
     /// Uniform or varying, as docs/language.md says of members: as the variable is declared, else the member, else by default.
     Storage memberStorage(const Symbol&, size_t member) const;
+    /// Of the program.
     const Structures& structures() const { return structures_; }
 
 private:

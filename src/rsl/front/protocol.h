@@ -48,6 +48,7 @@ struct InputName {
     static InputName left(std::string_view member, bool length = false) {
         return {Kind::Displacement, std::string(member), true, length, {}, {}};
     }
+    /// The name as the IR has it.
     std::string text() const;
     bool operator==(const InputName&) const = default;
 };
@@ -96,6 +97,7 @@ struct OutputName {
     static OutputName ofBlock(std::string_view name, int block) {
         return {What::Value, false, false, false, std::string(name), -1, block};
     }
+    /// The name as the IR has it.
     std::string text() const;
     bool operator==(const OutputName&) const = default;
 
@@ -115,6 +117,7 @@ struct QueriedOutput {
     bool varying = false; ///< points differ
     /// Nothing for any other text.
     static std::optional<QueriedOutput> parse(const std::string&);
+    /// What parse() reads.
     std::string text() const;
 };
 /// The same of a member that displacement() leaves: InputName::left(NAME).
@@ -123,6 +126,7 @@ struct QueriedMember {
     bool length = false; ///< their number is an input, too
     /// As QueriedOutput, for names that text() makes.
     static QueriedMember parse(const std::string&);
+    /// What parse() reads.
     std::string text() const;
 };
 
@@ -157,6 +161,7 @@ struct PairName {
     }
     /// The value of an output for lights that query it.
     static PairName surface(std::string_view name) { return {Kind::Surface, std::string(name), -1, To::Light, false}; }
+    /// The name as the IR has it.
     std::string text() const;
 };
 // Pairs that the compiler adds to a call; shaders do not write them.
@@ -224,6 +229,7 @@ struct LightHandle {
     std::string declared; ///< its handle; may be ""
     /// Nothing for any other handle.
     static std::optional<LightHandle> parse(std::string_view);
+    /// What parse() reads.
     std::string text() const;
 };
 /// What "%h" of format() and messages call a handle: lights and co-shaders by the handle of their declaration, no shader

@@ -41,6 +41,7 @@ public:
     bool buildShader();
     /// Builds a kernel whose outputs are the values of all parameters, given those of the scene.
     bool buildDefaults(const std::vector<ParameterValue>& given);
+    /// The value that the scene gives a parameter, or its default; length: of an array of open length.
     Inst* givenValue(const Symbol&, const ParameterValue&);
     Inst* defaultValue(const ShaderParameter&, int length);
 

@@ -26,6 +26,7 @@ public:
     bool run(Inst* ci);
     /// Adds Output number `output`, the weight of the inputs together in `ci`. Dependence on them: analyseInput. False as above.
     bool runToInputs(Inst* ci, const std::vector<Inst*>& inputs, int output);
+    /// Why the last step failed.
     const std::string& why() const { return reason; }
     int stuckSite() const { return site; } ///< -1: not known
 

@@ -14,6 +14,7 @@ namespace alpenglow::rsl::passes {
 enum class Neighbour : uint8_t { Here, U, V, UU, UV, VV };
 inline constexpr int kNeighbours = 6;
 inline constexpr int kStepsU[kNeighbours] = {0, 1, 0, 2, 1, 0}, kStepsV[kNeighbours] = {0, 0, 1, 0, 1, 2};
+/// The neighbour of a number below kNeighbours; its bit in sets.
 inline Neighbour neighbour(int n) { return static_cast<Neighbour>(n); }
 inline uint8_t bitOf(Neighbour n) { return static_cast<uint8_t>(1 << static_cast<int>(n)); }
 /// One step on, along v or u; false where that is too far.
@@ -81,6 +82,7 @@ public:
     /// What a Loop, LightLoop or Function carries besides its own values, or what a followed If gives: index and neighbour, in
     /// order.
     using Carried = std::vector<std::pair<int, Neighbour>>;
+    /// Of a construct; what is wanted within a function for one result at a neighbour.
     Carried carried(const Inst* construct, const Inst* within) const;
     Demand& function(const Inst* f, int result, Neighbour);
 

@@ -16,6 +16,7 @@ public:
         s.add(n);
         return s;
     }
+    /// Whether it is not empty; adds an ordinal; whether one is in it.
     explicit operator bool() const {
         for (uint64_t w : rest_)
             if (w) return true;

@@ -47,7 +47,7 @@ template <class T> AL_INLINE T fresnelComplex(const T& c, const T& eta, const T&
     const T rp = rs * divide(sum2 - twice2, sum2 + twice2);
     return smaller(positive((rs + rp) * vf(0.5f)), T(vf(1)));
 }
-/// One channel of the optional Fresnel factor: 1 where eta is 0 (seed: "providing full reflection").
+/// One channel of the optional Fresnel factor: 1 where eta is 0 (docs/design/rsl.md, "Distributions").
 template <class T> AL_INLINE T fresnelOrFull(const T& c, const T& eta, const T& k) {
     return select(value(eta) <= 0, T(vf(1)), fresnelComplex(c, eta, k));
 }

@@ -73,6 +73,7 @@ template <class T> struct HairBell {
     }
     /// The bell's integral up to x, before `scale`, and the whole turns to add: differences of both are integrals.
     AL_MEMBER T upTo(const T& x, vf& turns) const { return logistic(wrap(x, turns) * perWidth); }
+    /// The bell's value at x.
     AL_MEMBER T at(const T& x) const {
         vf n;
         const T e = exponential(-absolute(wrap(x, n)) * perWidth), s = e + vf(1);
@@ -121,6 +122,7 @@ template <class T> struct HairPiece {
     T to, middle, fresnel; ///< angles inside, and Fresnel reflectance
     Triple<T> through;     ///< transmittance of one way through the fibre, by channel
 };
+/// Piece i, 0 to kHairPieces - 1.
 template <class T> AL_INLINE HairPiece<T> hairPiece(const HairLight<T>& g, const Triple<T>& absorption, int i) {
     HairPiece<T> x;
     const T one = T(vf(1)), s = g.perIndex * vf(kHair.sine[2 * i + 1]);
@@ -142,6 +144,7 @@ template <class T> struct HairLobe {
     vf plusTurns, minusTurns; ///< whole turns of plus and minus
     Triple<T> around;         ///< sum so far, by channel
 };
+/// The lobe by its number: 0 to 3.
 template <class T> AL_INLINE vf hairNumber(const T& lobe) { return minLanes(maxLanes(floorLanes(value(lobe)), vf(0)), vf(3)); }
 /// Scale of the bell around the fibre for a spread of 0..1.
 template <class T> AL_INLINE T hairBellWidth(const T& azimuthal) {
@@ -166,6 +169,7 @@ AL_INLINE HairLobe<T> hairLobe(const HairLight<T>& g, vf p, const T& st, const T
     lobe.minus = bell.upTo(g.phi + lobe.from, lobe.minusTurns);
     return lobe;
 }
+/// Adds piece i to a lobe.
 template <class T> AL_INLINE void addPiece(HairLobe<T>& lobe, const HairLight<T>& g, const HairPiece<T>& x, int i) {
     const vf p = lobe.p;
     const HairBell<T>& bell = lobe.bell;

@@ -46,6 +46,7 @@ public:
     void emitLoopKernel();
     /// The functions of a suspending kernel: one coroutine a strip.
     void emitCoroutine();
+    /// String constants of the kernel, in the order of KernelCall::strings.
     const std::vector<std::string>& strings() const { return shared_->strings; }
     /// Bytes of KernelCall::memory that a kernel that does not suspend wants.
     uint64_t localBytes() const { return shared_->localBytes; }
@@ -196,6 +197,7 @@ struct Plan {
     int vectors = 1;
     bool wrapCalls = false; ///< noise is called through wrappers
 };
+/// Of a kernel with these shapes.
 Plan plan(const ModuleRequest&, const Shapes&);
 
 } // namespace alpenglow::rsl::jit

@@ -43,6 +43,7 @@ public:
     /// Whether result `index` of an instruction with several results has a Result instruction (dead ones are removed by the
     /// passes).
     bool used(const ir::Inst* i, int index) const { return i->results.empty() || used_.count({i, index}) != 0; }
+    /// Whether the kernel has requests for rays.
     bool hasRequests() const { return requests_; }
     /// Order that a Runtime instruction is called with, from its arguments' shapes and the wanted orders.
     int callOrder(const ir::Inst*) const;
@@ -83,6 +84,7 @@ struct Pressure {
     int wideCalls = 0;                   ///< of those, calls that carry derivatives: few registers are left
     bool effects = false, loops = false; ///< it has calls with effects; it has loops
 };
+/// outOfLine: calls of the runtime that are not inlined, by symbol, with the widest lanes; may be null.
 Pressure measure(const ir::Kernel&, const Shapes&, const std::map<std::string, int>* outOfLine);
 
 } // namespace alpenglow::rsl::jit

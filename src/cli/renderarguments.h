@@ -17,6 +17,7 @@ struct RenderArguments {
     /// Texts of the options of these names.
     std::vector<std::string> scenes, searchPaths, displays, rib, filters;
     std::vector<std::string> lastArchivePaths, lastProceduralPaths; ///< of the environment, after all others
+    /// Texts of the options of these names.
     std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
     std::string gamma, preview;
     std::vector<std::pair<std::string, int>> tev; ///< hosts and ports

@@ -1,5 +1,4 @@
-// Deep shadow maps in memory: transmittance over depth for each pixel (Lokovic, Veach: Deep Shadow
-// Maps, 2000).
+// Deep shadow maps in memory: transmittance over depth for each pixel (Lokovic, Veach: Deep Shadow Maps, 2000).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -10,7 +9,7 @@ namespace alpenglow::display {
 /// Transmittance behind a depth (camera-space z), by channel, 0 to 1.
 struct DeepStep {
     float z = 0;
-    float transmittance[3] = {1, 1, 1};
+    float transmittance[3] = {1, 1, 1}; ///< red, green, blue
 };
 
 /// Transmittance over depth as a staircase, pixel by pixel in rows from the top: 1 before the first step, constant after the

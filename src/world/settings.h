@@ -41,8 +41,8 @@ struct Settings {
     /// Total size of the lists of lights that surfaces have of their own; surfaces behind these share one list (tests: 0).
     size_t listedLights = 4'000'000;
     int deferredAtOnce = 1; ///< deferred procedurals along its way that a ray asks for, nearest first (deferred.h)
-    MediumSampling mediumSampling = MediumSampling::Both;
-    std::vector<std::string> shaderPaths, texturePaths;
+    MediumSampling mediumSampling = MediumSampling::Both; ///< Both; others for tests
+    std::vector<std::string> shaderPaths, texturePaths; ///< folders, in order
     ReadPolicy read{};                    ///< restricts where map names may lead
     std::shared_ptr<ReadLog> reads;       ///< records every shader and map that is read or missing; may be null
     bool allowExec = false;               ///< shaders may load plug-ins

@@ -42,13 +42,13 @@ struct Settings {
     size_t listedLights = 4'000'000;
     int deferredAtOnce = 1; ///< deferred procedurals along its way that a ray asks for, nearest first (deferred.h)
     MediumSampling mediumSampling = MediumSampling::Both; ///< Both; others for tests
-    std::vector<std::string> shaderPaths, texturePaths; ///< folders, in order
-    ReadPolicy read{};                    ///< restricts where map names may lead
-    std::shared_ptr<ReadLog> reads;       ///< records every shader and map that is read or missing; may be null
-    bool allowExec = false;               ///< shaders may load plug-ins
-    std::vector<std::string> pluginPaths; ///< search path of plug-ins
-    std::string dialect;                  ///< dialect that defines the macros of shaders: rsl::FrontOptions::dialect
-    std::string cacheDirectory;           ///< "" = default
+    std::vector<std::string> shaderPaths, texturePaths;   ///< folders, in order
+    ReadPolicy read{};                                    ///< restricts where map names may lead
+    std::shared_ptr<ReadLog> reads;                       ///< records every shader and map that is read or missing; may be null
+    bool allowExec = false;                               ///< shaders may load plug-ins
+    std::vector<std::string> pluginPaths;                 ///< search path of plug-ins
+    std::string dialect;        ///< dialect that defines the macros of shaders: rsl::FrontOptions::dialect
+    std::string cacheDirectory; ///< "" = default
     std::vector<std::string>
         outputs; ///< AOVs, in order: output parameters of shaders ("list[1]": an element) or predefined variables
     /// Polled while the world is built (dicing, displacement); if set, build() stops. May be null

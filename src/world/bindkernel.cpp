@@ -393,7 +393,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (readsPoints(i)) {
             i.kind = s.op == "subsurface" ? SiteKind::PointSubsurface : SiteKind::PointHemisphere;
             auto points = std::make_shared<PointSite>(*pointSite(i, *k, world));
-            if (s.op == "subsurface") points->below = *subsurfaceSite(i, s, *k, world);
+            if (s.op == "subsurface") points->subsurface = *subsurfaceSite(i, s, *k, world);
             i.points = std::move(points);
         }
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);

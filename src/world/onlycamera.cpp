@@ -34,8 +34,8 @@ bool sendsNothing(const Opacity& o) { return sendsNothing(o.kernel); }
 } // namespace
 
 bool MutableWorld::onlyCameraRays() const {
-    if (settings_.hider == Hider::Path || !media_.empty() || deferred_ || globalMaps_ || (clouds_ && clouds_->bakes) ||
-        needs_.records || settings_.bsdfOnly || settings_.lightOnly)
+    if (settings_.hider == Hider::Path || !media_.empty() || deferred_ || globalMaps_ || needs_.bakes || needs_.records ||
+        settings_.bsdfOnly || settings_.lightOnly)
         return false;
     for (const BoundLight& l : lights_) {
         // An area light with a mean needs no rays; any other with an extent does.

@@ -1,6 +1,5 @@
 // Whether a frame traces camera rays only. Then geometry that they cannot reach may be left out.
 #include "scene/scene.h"
-#include "world/cloudstore.h"
 #include "world/mutableworld.h"
 #include "world/service.h"
 

@@ -49,6 +49,7 @@ private:
     /// Sets alone_ for light that rays of the lobe might also find.
     void weighAlone(const VertexBlock&, const LobeBlock&, const LightBlock&, const float* kept, bool ahead, Lanes met);
     /// For the light of a lane just added to the queue: ShadowRays::AloneLight.
+    uint16_t pathOf(const Site&, size_t point, const Vec3& w, const BatchContext&) const;
     void noteAlone(const Site&, size_t lane, int32_t more);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     void limitShadows(const Site&, const size_t* points, const BoundLight* const* lights, LightBlock&);

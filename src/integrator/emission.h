@@ -15,6 +15,7 @@ struct EmissionStart {
     float factor = 0;                       ///< multiplies the value of the light's kernel, before `length` applies
     float length = 0;                       ///< distance to the first hit; 0: no hit
     float kept = 1;                         ///< LightValue::kept() of rays of highlights, at the photon's first hit
+    float keptDiffuse = 1;                  ///< the same of diffuse rays
     bool front = false;                     ///< Area: leaves on the side of n
 };
 

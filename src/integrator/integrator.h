@@ -9,6 +9,7 @@
 #include "integrator/samples.h"
 #include "scene/fwd.h"
 #include "scene/primitive.h"
+#include "world/causticseeds.h"
 #include "world/storedphoton.h"
 #include "world/world.h"
 #include <memory>
@@ -49,6 +50,7 @@ struct PhotonUse {
     bool caustics = false; ///< stores caustic photons only
     float width = 0;       ///< lobes with a smaller spread, in radians, count as mirrors
     bool learns = false;   ///< for the caustic guide: only lights that rays can find emit, shaders do not print or bake
+    bool unmet = false;    ///< with `learns`: only lights that no ray meets emit: point, spot and distant lights that do not move
 };
 
 /// Emits photons in one world, which must have been built for the hider path.
@@ -63,6 +65,8 @@ public:
     /// Adapts emission to the stored photons of a pass of `emitted` photons: later passes send more where these went. Call while
     /// no thread emits.
     void learn(std::span<const StoredPhoton>, uint32_t pass, uint32_t emitted);
+    /// With PhotonUse::unmet: appends the starts of stored photons of a pass, from which they can be sent again.
+    void addSeeds(std::span<const StoredPhoton>, uint32_t pass, std::vector<CausticSeed>&, Diagnostics&) const;
     /// Marks the lights that emit here as those whose light the photon passes carry.
     void markPhotonLights() const;
 
@@ -90,6 +94,9 @@ private:
     struct Impl;
     std::unique_ptr<Impl> impl_;
 };
+
+/// Mirrors that the probes of a search meet on average, at some of the places where photons came to rest: its cost.
+double costOfSearches(const std::shared_ptr<const World>&, const CausticSeeds&, Diagnostics&);
 
 /// Size of the light guides of a world.
 struct LightGuideFigures {

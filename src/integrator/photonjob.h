@@ -1,9 +1,11 @@
 // Photon emission: the distribution over lights (EmissionPlan), parameters of one emission (PhotonJob), and the stored photons.
 #pragma once
 #include "integrator/batchcontext.h"
+#include "integrator/photonprobe.h"
 #include "world/storedphoton.h"
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace alpenglow::integrator {
 
@@ -90,9 +92,11 @@ struct PhotonJob {
 
 /// Photons in flight.
 struct PhotonTrace {
-    const PhotonJob* job = nullptr; ///< what is emitted
-    uint32_t first = 0;             ///< photon number for PathSample::path 0
-    std::vector<Color> power;       ///< by path: power for throughput 1, in units of job->scale
+    const PhotonJob* job = nullptr;      ///< what is emitted
+    std::span<const PhotonProbe> probes; ///< by path; empty: photons are stored
+    std::span<ProbeEnd> ends;            ///< by path, of the probes
+    uint32_t first = 0;                  ///< photon number for PathSample::path 0
+    std::vector<Color> power;            ///< by path: power for throughput 1, in units of job->scale
     /// Where a photon comes from.
     struct From {
         int light = -1; ///< index in WorldImpl::lights()

@@ -37,12 +37,13 @@ struct Counters {
     uint64_t guided = 0;              ///< rays aimed by the caustic guide; also counted in the other counters
     uint64_t guidedLit = 0;           ///< those that found light
     uint64_t guidedLight = 0;         ///< sum of the luminance they brought, in units of kLightUnit: exact in any order
-    static constexpr double kLightUnit = 0x1p-20; ///< unit of guidedLight
-    uint64_t records = 0, interpolated = 0;       ///< irradiance records made, and lookups interpolated from them
-    int depthMax = 0;                             ///< bounces of the longest path
-    size_t peakFrameBytes = 0;                    ///< largest size of suspended kernel frames at one time, over all threads
-    size_t threadBytes = 0;                       ///< most memory of rays, points, columns and frames of one thread
-    std::vector<MediumSegments> media;            ///< by WorldImpl::media(); may be shorter
+    static constexpr double kLightUnit = 0x1p-20;         ///< unit of guidedLight
+    uint64_t searches = 0, searchesFound = 0, probes = 0; ///< of SpecularSearch
+    uint64_t records = 0, interpolated = 0;               ///< irradiance records made, and lookups interpolated from them
+    int depthMax = 0;                                     ///< bounces of the longest path
+    size_t peakFrameBytes = 0;         ///< largest size of suspended kernel frames at one time, over all threads
+    size_t threadBytes = 0;            ///< most memory of rays, points, columns and frames of one thread
+    std::vector<MediumSegments> media; ///< by WorldImpl::media(); may be shorter
     /// By WorldImpl::lights(), may be shorter: runs of the light's kernel. Counted only if a shader of the world bakes.
     std::vector<uint64_t> lightRuns;
     void operator+=(const Counters&); ///< Adds sums; keeps the larger of maxima.

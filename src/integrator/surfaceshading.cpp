@@ -98,9 +98,12 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
         const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
         const Color clear = chance > 0 && !c.opaque ? transparency_.goesOn(c, i) : Color(0);
         if (ray.counts && ray.sample->grid) accumulator_.results[size_t(ray.sample->path)]->behind = clear;
-        else if (maxComponent(clear) > 0)
+        else if (maxComponent(clear) > 0) {
+            if (PhotonTrace* const t = photons_.photonTrace(); t && !t->probes.empty())
+                t->ends[size_t(ray.sample->path)].chance *= chance;
             transparency_.continueBehind(binding, ray, c.targets[i], c.points[i], clear, chance,
                                          asked.empty() ? 0 : asked[size_t(i - first)], sched);
+        }
     }
 }
 

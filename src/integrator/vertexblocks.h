@@ -72,6 +72,7 @@ struct VertexBlocks final : Stage {
     int onlySite = -1;                       ///< the only site that samples it; -1: all
     uint32_t draw = 0;                       ///< which sample, if lobes take several
     bool several = false;                    ///< some lobe takes several samples of each light
+    bool mirrored = false;                   ///< the light comes by mirrors: for light path outputs
     bool checksHits = false;                 ///< lobes differ in the samples that their rays could hit
     std::vector<int> litSurface;             ///< litSurfaceAt(); empty: no light queries surfaces
     std::vector<LightBlock> lights;          ///< by block: samples of the light
@@ -111,6 +112,7 @@ class PhotonFlight;
 class PhotonGather;
 class ScatterRays;
 class SingleRequests;
+class SpecularLights;
 class VertexLoading;
 
 /// The stages over vertices in blocks, by reference. Each takes those that it calls.

@@ -14,6 +14,7 @@
 #include "integrator/requests.h"
 #include "integrator/scatterrays.h"
 #include "integrator/singlerequests.h"
+#include "integrator/specularlights.h"
 #include "integrator/stageset.h"
 #include "integrator/strips.h"
 #include "integrator/subsurfacewalks.h"
@@ -38,6 +39,7 @@ struct VertexLight::Parts {
     Connection connection;
     LastVertices last;
     GuideScatter guide;
+    SpecularLights specular;
     PhotonGather gather;
     PhotonFlight flight;
     ScatterRays scatter;
@@ -46,7 +48,7 @@ struct VertexLight::Parts {
 VertexLight::Parts::Parts(const StageSet& s)
     : blocks(s), set{blocks, loading, requests, single, selection, lights, connection, last, guide, gather, flight, scatter},
       loading(s, set), requests(s, set), single(s, set), selection(s, set), lights(s, set), connection(s, set), last(s, set),
-      guide(s, set), gather(s, set), flight(s, set), scatter(s, set) {}
+      guide(s, set), specular(s, set), gather(s, set), flight(s, set), scatter(s, set) {}
 
 VertexLight::VertexLight(const StageSet& s)
     : Stage(s.context), parts_(std::make_unique<Parts>(s)), set_(s), ambient_(s.ambient), lastSkies_(s.lastSkies),
@@ -165,6 +167,7 @@ void VertexLight::followLobes(BatchContext& c, Sched& sched) {
     p.lights.run(c, sched);
     if (rules_.emissionCounts && lastSkies_.any()) p.last.run(c);
     p.guide.run(c, sched);
+    p.specular.run(c);
     p.gather.take(c, sched);
     p.scatter.run(c, sched);
     if (!subsurface_.media.empty()) subsurface_.walk(c, sched); // may light further batches here

@@ -8,6 +8,7 @@
 //   Connection      what lobes reflect of it; shadow rays                                     connection.h
 //   LastVertices    at the end of paths, skies that only rays would reach                     lastvertices.h
 //   GuideScatter    rays of the caustic guide                                                 guidescatter.h
+//   SpecularLights  light of point and distant lights by mirrors       specularlights.h
 //   PhotonGather    light of nearby photons                                                   photongather.h
 //   ScatterRays     directions, roulette, the next rays                                       scatterrays.h
 //   PhotonFlight    for photons, in place of the stages from LobeSelection on                 photonflight.h

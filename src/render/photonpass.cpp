@@ -192,7 +192,7 @@ bool CausticPasses::begin() {
     begun_ = true;
     if (!asked(o)) {
         forgetLearned(job_); // of another part of the same world, in the viewer: pilot paths would follow it
-        return learnCaustics(job_) && learnLights(job_) && learnBrightness(job_);
+        return learnCaustics(job_) && learnSeeds(job_) && learnLights(job_) && learnBrightness(job_);
     }
     if (!job_.world->photons()) return true;
     // One photon for four pixels of the complete picture, so that a crop equals that part of the picture.

@@ -19,6 +19,9 @@ enum RandomUse : uint32_t {
     kAlbedo,
     kGuideRay,
     kShadowRoulette,
+    kSpecularSearch,
+    kSpecularSeed,
+    kSpecularCone,
     kLightPoint = 1u << 21
 };
 

@@ -103,7 +103,7 @@ void Connection::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
     const BoundLight* lights[kBlock];
     std::fill_n(lights, kBlock, &of);
     LightBlock& l = v_.lights[b];
-    l.parted = c.between; // lightSampling_.takeParts()
+    l.hasPart = c.between; // lightSampling_.takeParts()
     stages_.aim(v_.vertices[b], l, v_.shadow);
     std::fill_n(v_.sent, kBlock, -1);
     const Lanes placed = l.asked;
@@ -152,7 +152,7 @@ void Connection::sendShadow(const Site& site, size_t point, size_t lane, const V
     s.path = pathOf(site, point, w, c);
     if (s.path) s.light = paths_.lights[v_.numberOf(of)];
     // Under the other hiders, light loops and trace() with "samplelights" let lights without "shadows" through.
-    const bool asInLoops = !rules_.pickOne && (c.below || (!site.lighting && !emitter && !of.isSky()));
+    const bool asInLoops = !rules_.pickOne && (c.subsurface || (!site.lighting && !emitter && !of.isSky()));
     if (says && says->shadowRadius > 0) { // to a point on the disk
         const VertexBlock& v = v_.vertices[point / kBlock];
         const uint32_t use = kLightPoint + v_.numberOf(of), vertex = v.lightVertex[point % kBlock];

@@ -11,6 +11,7 @@ class Accumulator;
 class MediaStacks;
 class ShadowRays;
 
+/// Connects vertices with the light samples of their block.
 class Connection final : VertexStage {
 public:
     Connection(const StageSet&, const VertexStages&);
@@ -28,6 +29,7 @@ public:
     /// point. While it lives, VertexBlocks::shadow is of this call site alone, if it needs that; then the common ones are back.
     class OwnShadows {
     public:
+        /// For a call site of the blocks at hand.
         OwnShadows(Connection&, const Site&);
         OwnShadows(const OwnShadows&) = delete;
         OwnShadows& operator=(const OwnShadows&) = delete;

@@ -128,8 +128,9 @@ bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         t.from[i] = {plan.lights()[size_t(s.drawn.light)].number, s.kept};
         r.media = set.photons.aboutLight(plan.lights()[size_t(s.drawn.light)], s);
         if (s.shape) // the atmosphere at the light is applied at the hit
-            if (const auto hazy = w.emittersInAtmosphere().find(s.shape); hazy != w.emittersInAtmosphere().end()) {
-                r.lobeBinding = hazy->second;
+            if (const auto inAtmosphere = w.emittersInAtmosphere().find(s.shape);
+                inAtmosphere != w.emittersInAtmosphere().end()) {
+                r.lobeBinding = inAtmosphere->second;
                 r.lobeOrigin = intersectsAt(s.surface);
             }
         if (w.fades()) sample.level = levelOf(sample.numbers);

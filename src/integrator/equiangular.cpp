@@ -179,7 +179,7 @@ private:
     /// Light scattered back along the segment for light Cl at its point. density: of the sample on an emitter; 0: another light.
     Color scattered(const Near& n, const Color& Cl, float phase, float kept, float density) const {
         const Homogeneous& h = *medium_.homogeneous;
-        const Color c = *n.weight * h.scattering * h.left(n.t) * Cl;
+        const Color c = *n.weight * h.scattering * h.transmittance(n.t) * Cl;
         return c * (phase * n.scale * kept * (density > 0 ? 1 / density : float(kPi))); // Cl is irradiance / pi
     }
     /// Redirects a shadow ray to a point on the disk around a light.

@@ -1,4 +1,4 @@
-// All that other rooms use of light transport: the light along camera rays (Integrator), emission of photons (PhotonEmission),
+// All that other folders use of light transport: the light along camera rays (Integrator), emission of photons (PhotonEmission),
 // and what is learned of lights before the first sample. All of it is constructed from a frame prepared for rendering (World).
 // Under "hidden" and "raytrace" shaders keep their classic RenderMan semantics; under "path" all light reaches their lobes
 // (docs/design/light-transport.md).
@@ -21,8 +21,10 @@ namespace alpenglow::integrator {
 /// World::build() with an Evaluator that runs kernels as the integrator does.
 std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame>, const Settings&, Diagnostics&);
 
+/// Light along camera rays. One for each thread; it is expensive to construct.
 class Integrator {
 public:
+    /// Of World::build(); diagnostics outlive this.
     explicit Integrator(std::shared_ptr<const World>, Diagnostics&);
     ~Integrator();
     /// Traces all rays to the end. Results do not depend on which rays share a call. Returns false if `stop` was set; the results
@@ -33,6 +35,7 @@ public:
     bool seesNothing(std::span<const geometry::Plane>) const;
     /// Whether a ray of the last trace() reached the bound of a deferred procedural; its results are then undefined (deferred.h).
     bool unfinished() const;
+    /// Of all calls so far.
     const Counters& counters() const;
 
 private:
@@ -53,6 +56,7 @@ struct PhotonUse {
 /// Emits photons in one world, which must have been built for the hider path.
 class PhotonEmission {
 public:
+    /// For one PhotonUse. Diagnostics outlive this.
     PhotonEmission(std::shared_ptr<const World>, const PhotonUse&, Diagnostics&);
     ~PhotonEmission();
     bool lights() const;  ///< whether any light emits
@@ -64,17 +68,19 @@ public:
     /// With PhotonUse::unmet: appends the starts of stored photons of a pass, from which they can be sent again.
     void addSeeds(std::span<const StoredPhoton>, uint32_t pass, std::vector<CausticSeed>&, Diagnostics&) const;
     /// Marks the lights that emit here as those whose light the photon passes carry.
-    void tellLights() const;
+    void markPhotonLights() const;
 
     /// The emitter of one thread.
     class Thread {
     public:
+        /// Diagnostics receive what this thread reports.
         Thread(const PhotonEmission&, Diagnostics&);
         ~Thread();
         /// Emits photons `first` to first + count - 1 of a pass of `emitted` photons and appends the stored ones to `out`, in the
         /// order of their numbers. Returns false if stopped; `out` is then undefined.
         bool emit(uint32_t pass, uint32_t first, uint32_t count, double emitted, std::vector<StoredPhoton>& out,
                   const StopFlag* stop);
+        /// Of all calls so far.
         const Counters& counters() const;
         /// Distance that lights, and surfaces hit by its photons, move while the shutter is open.
         float travel() const;

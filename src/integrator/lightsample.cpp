@@ -5,7 +5,7 @@
 
 namespace alpenglow::integrator {
 
-void tellLit(ShadePoint& p, const ShadePoint& lit) {
+void takeLitPoint(ShadePoint& p, const ShadePoint& lit) {
     p.Ps = lit.P;
     p.lit = &lit.surface;
     p.Ns = lit.N;

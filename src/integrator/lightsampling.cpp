@@ -121,7 +121,7 @@ bool LightSampling::samples(const Site& s, const BoundLight& light) const {
 /// Chooses a point on the light for a lit one. Returns false if the sample carries no light.
 bool LightSampling::placeQuery(const BoundLight& light, const LightGuide* guide, const LightNumbers& u, const ShadePoint& lit,
                                ShadePoint& q, Emitter::Sample& s) const {
-    tellLit(q, lit);
+    takeLitPoint(q, lit);
     if (!placeLightSample(world_, light, guide, u, rules_.pickOne, q, s)) return false;
     // Sides 1: rays pass through the emitter from its back, so it sends nothing there.
     return v_.checksHits || light.kind != LightKind::Area || light.mean || !s.shape->oneSided() ||

@@ -11,7 +11,7 @@
 namespace alpenglow::integrator {
 
 /// A vertex gives one answer to lights that query its surface: that of its first lobe.
-void LightSampling::tellLights(BatchContext& c) {
+void LightSampling::recordLitSurfaces(BatchContext& c) {
     surfaces_.pointsOfRows(c);
     v_.litSurface.assign(v_.points, -1);
     std::vector<LitValues>& all = litSurfaces_.values;
@@ -29,7 +29,7 @@ void LightSampling::tellLights(BatchContext& c) {
                 v_.litSurface[point] = int(all.size());
                 if (!s.info) { // no call: points in a medium, and exits of walks
                     LitValues& of = all.emplace_back();
-                    of.binding = c.below ? c.bindings[point] : -1;
+                    of.binding = c.subsurface ? c.bindings[point] : -1;
                     of.N = c.points[point].N;
                     of.I = c.points[point].I;
                     continue;
@@ -60,7 +60,7 @@ void LightSampling::askQueries(const BoundLight& light, const BoundKernel* group
         call.lit = &lit;
     }
     std::vector<char> inMedium;
-    if (light.hazy && !world_.media().empty()) {
+    if (light.inAtmosphere && !world_.media().empty()) {
         for (const BlockQuery& a : v_.asked)
             inMedium.push_back(MediaStacks::mediumOf(media_.towards(c, a.point, a.sample.direction)) >= 0);
         call.inMedium = &inMedium;

@@ -23,6 +23,7 @@ template <class Row> LitValues litValuesOf(const BatchContext& c, const SiteInfo
     return values;
 }
 
+/// Keeps what lights query of the surfaces that they light.
 class LitSurfaces final : Stage {
 public:
     explicit LitSurfaces(const StageSet&);

@@ -116,7 +116,7 @@ void PhotonEmission::addSeeds(std::span<const StoredPhoton> stored, uint32_t pas
     to.erase(std::remove_if(to.begin() + long(before), to.end(), [](const CausticSeed& s) { return s.light < 0; }), to.end());
 }
 
-void PhotonEmission::tellLights() const {
+void PhotonEmission::markPhotonLights() const {
     impl_->world->photons()->lightsOfPasses = impl_->plan->emits();
     impl_->world->photons()->widthOfPasses = impl_->use.width;
 }

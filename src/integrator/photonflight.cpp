@@ -102,7 +102,7 @@ void PhotonFlight::follow(BatchContext& c, Sched& sched) {
     lookBack(c, sched);
     rest(c);
     for (size_t b = 0; b < v_.blocks; ++b) send(b, c, sched);
-    if (!subsurface_.below.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
+    if (!subsurface_.media.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
 }
 
 void PhotonFlight::mark(BatchContext& c) {
@@ -216,7 +216,7 @@ void PhotonFlight::restAt(size_t point, const BatchContext& c) {
         spread |= s.walks && t.job->caustics;
     }
     const bool caustic = from.bounces > 0 && !(from.trail & shading::kTrailSpread);
-    const Color power = t.power[size_t(from.sample->path)] * from.weight * leftOfPhoton(c, point) * float(t.job->scale);
+    const Color power = t.power[size_t(from.sample->path)] * from.weight * photonTransmittance(c, point) * float(t.job->scale);
     if (!spread || (t.job->caustics && !caustic) || !isFinite(power) || !(maxComponent(power) > 0)) return;
     StoredPhoton s;
     const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
@@ -295,7 +295,7 @@ bool PhotonFlight::extendAt(size_t b, size_t i, BatchContext& c) {
     const float indirect = (s.lighting && !s.walks ? v_.vertices[b].energyScale[i] : 1) * v_.indirectOf(s, point);
     const Color through = l.narrow >> i & 1 ? back_[point] : request * (f * (next.scale[i] * indirect));
     Color weight = from.weight * through;
-    weight *= leftOfPhoton(c, point) * photonWay(s, point, c, w);
+    weight *= photonTransmittance(c, point) * photonWay(s, point, c, w);
     if (!isFinite(weight)) {
         accumulator_.notFinite(c, from, uint32_t(s.number));
         return false;
@@ -334,9 +334,9 @@ float PhotonFlight::photonWay(const Site& s, size_t point, const BatchContext& c
     const Vec3 in = normalize(p.I), tilt = in - from.dir;
     const float factor = photonFactor(&l.lobe[0][i], *s.kind, delta, -in, w, n, N);
     if (delta && length(tilt) > kLeastTilt / 4) {
-        const Vec3 aside = tilt - N * dot(tilt, N);
+        const Vec3 across = tilt - N * dot(tilt, N);
         const float si = sine(in, N), index = si > 0 ? sine(w, N) / si : 1;
-        w = normalize(w - aside * index);
+        w = normalize(w - across * index);
     }
     return factor;
 }
@@ -354,7 +354,7 @@ void PhotonFlight::keep(size_t b, const BatchContext& c) {
         const uint64_t kind = reinterpret_cast<uintptr_t>(kinds[s.diffuse]);
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
         r.pdf[i] = -1;
-        const bool sampled = s.lightsAt(point) && !((v_.next.single | l.elsewhere) >> i & 1);
+        const bool sampled = s.lightsAt(point) && !((v_.next.single | l.ownOrigin) >> i & 1);
         r.binding[i] = sampled || !c.between ? c.bindings[point] : -1;
         const auto depths = l.boundless >> i & 1 ? PhotonDepths::of(from)
                                                  : depthsBehind(from, world_.bindings()[size_t(c.bindings[point])], s.diffuse);

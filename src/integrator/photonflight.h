@@ -17,6 +17,7 @@ class SubsurfaceWalks;
 class Transparency;
 class VertexLight;
 
+/// Stores and continues photons.
 class PhotonFlight final : VertexStage {
 public:
     PhotonFlight(const StageSet&, const VertexStages&);

@@ -8,9 +8,11 @@
 
 namespace alpenglow::integrator {
 
+/// All stages of one thread.
 class Pipeline final : public shading::Sched::RayService {
 public:
-    Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&);
+    /// diagnostics outlive this. building: as MakeEvaluator; else the world is of World::build().
+    Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&, bool building = false);
     ~Pipeline() override;
     /// Traces camera rays to the end. Results do not depend on which rays share a call. Returns false if `stop` was set; `out` is
     /// then undefined.
@@ -24,9 +26,10 @@ public:
     bool probe(const PhotonJob& job, std::span<const PhotonProbe> probes, std::span<ProbeEnd> ends, const StopFlag* stop);
     // Scheduler callbacks.
     void follow(std::span<const shading::Sched::Task> slice, shading::Sched&) override;
-    bool settle(shading::Sched&) override;
+    bool shadeQueued(shading::Sched&) override;
     void followStrips(shading::Sched&) override;
 
+    /// Of this pipeline; valid as long as it.
     const StageSet& stages() const;
     const WorldImpl& world() const;
     Counters& counters();

@@ -65,7 +65,7 @@ void SpecularLights::connect(int number, BatchContext& c) {
     for (size_t b = 0; b < v_.blocks; ++b) {
         LightBlock& l = v_.lights[b];
         l.asked = l.metDiffuse = l.metSpecular = 0;
-        l.emitter = l.met = l.parted = false;
+        l.emitter = l.met = l.hasPart = false;
         l.draws = nullptr;
         std::fill_n(l.density, kBlock, 1.f);
         std::fill_n(l.keptDiffuse, kBlock, 1.f);

@@ -98,9 +98,9 @@ void MatteLoop::add(int x, int y, Vec2 place, const integrator::SampleResult& sa
             to.sizes += std::fabs(w);
             to.samples += own;
             Color before(1);
-            for (const integrator::DepthStep& s : sample.left) {
-                const Color hidden = before - s.left;
-                before = s.left;
+            for (const integrator::DepthStep& s : sample.transmittance) {
+                const Color hidden = before - s.transmittance;
+                before = s.transmittance;
                 const double share = (double(hidden.x) + double(hidden.y) + double(hidden.z)) / 3;
                 if (!s.surface || !(share > 0)) continue;
                 const Ids& ids = idsOf(s.surface);

@@ -74,7 +74,7 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<world::Stored
                         uint64_t* emitted) {
     const uint64_t blocks = (count + kBlock - 1) / kBlock;
     uint64_t done = 0;
-    const auto tell = [&](double now) {
+    const auto showProgress = [&](double now) {
         if (what.empty()) return;
         ProgressState s;
         s.fraction = s.samplesDone = double(now) / double(blocks);
@@ -94,7 +94,7 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<world::Stored
             },
             [&](size_t finished) {
                 job_.pollStop();
-                tell(double(done) + double(finished));
+                showProgress(double(done) + double(finished));
             });
         if (!whole) break;
         size_t more = stored.size();
@@ -224,7 +224,7 @@ bool CausticPasses::begin() {
         radius_ = start.radius;
         window_ = start.window;
     }
-    passes->emission().tellLights();
+    passes->emission().markPhotonLights();
     passes_ = std::move(passes);
     return true;
 }

@@ -11,7 +11,7 @@ namespace alpenglow::ri {
 
 /// The type of a parameter.
 struct Declaration {
-    scene::Class cls = scene::Class::Uniform;
+    scene::Class cls = scene::Class::Uniform; ///< storage class
     scene::Type type = scene::Type::Float;
     int arrayLength = 0; ///< 0 = not an array
 };
@@ -31,12 +31,12 @@ std::string declarationHint(std::string_view text, bool named, std::string_view 
 
 /// A token of a parameter list, taken apart.
 struct Resolved {
-    std::string name;
+    std::string name;                       ///< the token without an inline declaration
     std::optional<Declaration> declaration; ///< empty: not declared
     bool malformed = false;                 ///< an inline declaration that does not parse
-    bool inlineForm = false;
-    bool byValue = false;                 ///< known, with the type of its value
-    const OtherType* otherType = nullptr; ///< of an inline declaration: otherTypeIn()
+    bool inlineForm = false;                ///< the token has a declaration in it
+    bool byValue = false;                   ///< known, with the type of its value
+    const OtherType* otherType = nullptr;   ///< of an inline declaration: otherTypeIn()
 };
 
 /// The declared names of a stream. Not thread safe.

@@ -47,7 +47,7 @@ vector risLatLong(vector w;) { return vector(xcomp(w), -ycomp(w), zcomp(w)); }
 /* What every light has: filters and a profile as the renderer gives them (src/ri/lightfilters.h). Photometry is that of iesProfile, 1 where it
    is brightest; iesProfileScale s stretches its angles from the axis by 1 + s. */
 #define RIS_SHAPED uniform float lightFilters[] = {}; string lightFilterMaps[] = {}, lightFilterLinks[] = {}; \
-    string iesProfile = ""; uniform float lightProfile[] = {}; float iesProfileScale = 0
+    float enableShadows = 1; string iesProfile = ""; uniform float lightProfile[] = {}; float iesProfileScale = 0
 
 /* Where x lies among n angles from at on, with wrong ends held: the index below, and how far it is to the next. */
 float risAmong(uniform float a[]; uniform float at, n; float x; output float part;) {

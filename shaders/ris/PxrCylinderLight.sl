@@ -1,7 +1,8 @@
 /* PxrCylinderLight: a tube along x, 1 long and 1 across, that shines outwards, of RIS.
    Radiance is lightColor * intensity * 2^exposure, tinted by temperature where enableTemperature is 1; areaNormalize divides it by the
    area, so that the size does not change the power. emissionFocus, coneAngle and coneSoftness shape the beam.
-   Not done: shadow parameters, thinShadow and traceLightPaths. Lamp: Light "PxrCylinderLight" "l" "float intensity" 5 */
+   enableShadows 0: what is in the way lets its light pass.
+   Not done: other shadow parameters, thinShadow and traceLightPaths. Lamp: Light "PxrCylinderLight" "l" "float intensity" 5 */
 #include "rislight.h"
 light PxrCylinderLight(float intensity = 1, exposure = 0; color lightColor = 1; float enableTemperature = 0, temperature = 6500;
          float areaNormalize = 0, emissionFocus = 0, emissionFocusNormalize = 0; color emissionFocusTint = 0;

@@ -1,7 +1,8 @@
 /* PxrStdAreaLight: the primitives that follow in its attribute block shine, on everything: of PRMan 19 and 20.
    Radiance is lightColor * intensity * 2^exposure, tinted by temperature where enableTemperature is 1. It is divided by the area unless areaNormalize is 0, so
    that the size does not change the power. emissionFocus, coneAngle and coneSoftness shape the beam.
-   Not done: shadow parameters, thinShadow and traceLightPaths. Lamp: Light "PxrStdAreaLight" "l" "float intensity" 5 */
+   enableShadows 0: what is in the way lets its light pass.
+   Not done: other shadow parameters, thinShadow and traceLightPaths. Lamp: Light "PxrStdAreaLight" "l" "float intensity" 5 */
 #include "rislight.h"
 light PxrStdAreaLight(float intensity = 1, exposure = 0; color lightColor = 1; float enableTemperature = 0, temperature = 6500;
          float areaNormalize = 1, emissionFocus = 0, emissionFocusNormalize = 0; color emissionFocusTint = 0;

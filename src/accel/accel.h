@@ -20,7 +20,7 @@
 
 namespace alpenglow::accel {
 
-inline constexpr uint32_t kNone = geometry::kNone;
+inline constexpr uint32_t kNone = geometry::kNone; ///< no shape, or no primitive
 
 /// Kinds of rays, for Ray::mask and visibility of shapes.
 enum Visibility : uint32_t { kCamera = 1, kDiffuse = 2, kSpecular = 4, kTransmission = 8, kAll = 0xffffffffu };
@@ -30,7 +30,7 @@ enum class Sides : uint8_t { Front, Back, Both };
 
 /// A ray in camera space. dir need not be unit; t is in units of its length.
 struct Ray {
-    Vec3 org, dir;
+    Vec3 org, dir;                                      ///< camera space
     float tnear = 0;                                    ///< hits have t > tnear ...
     float tfar = 1e38f;                                 ///< ... and t < tfar
     float time = 0;                                     ///< of the shutter, 0 to 1
@@ -47,12 +47,13 @@ struct Ray {
 
 /// Input for the shape's evaluateHit. shape == kNone: no hit.
 struct Hit {
-    float t = 0;
+    float t = 0;            ///< distance in lengths of Ray::dir, rounded to float
     uint32_t shape = kNone; ///< index in the shapes of the Accel: the instance
-    uint32_t prim = 0;
-    float time = 0; ///< of the ray
-    double b1 = 0, b2 = 0;
-    double distance = 0; ///< t before rounding
+    uint32_t prim = 0;      ///< index of the primitive in the shape
+    float time = 0;         ///< of the ray
+    double b1 = 0, b2 = 0;  ///< the shape's coordinates of the hit: barycentric weights of a triangle, else its own parameters
+    double distance = 0;    ///< t before rounding
+    /// Whether something was hit.
     bool valid() const { return shape != kNone; }
 };
 
@@ -105,6 +106,7 @@ public:
     /// takesRows(Sides). time: of the shutter, by ray. Results of other rays are unchanged.
     bool takesRows() const;
     bool takesRows(Sides) const; ///< for rays with this value
+    /// The searches for a block: fill hits[i], or met[i] with 1 or 0, for each bit i of `rays`. Only while takesRows().
     void intersect(const DirectRays&, uint32_t rays, const float* time, Hit* hits) const;
     void occluded(const DirectRays&, uint32_t rays, const float* time, uint8_t* met) const;
 

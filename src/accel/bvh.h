@@ -29,9 +29,9 @@ enum class Building { Best, Quick };
 /// The tree. Immutable after build().
 class Bvh {
 public:
-    static constexpr int kWidth = 8; ///< children of a node
-    static constexpr int kLeafTriangles = 6, kLeafVertices = 8;
-    static constexpr int kDeepest = 80; ///< maximum depth
+    static constexpr int kWidth = 8;                            ///< children of a node
+    static constexpr int kLeafTriangles = 6, kLeafVertices = 8; ///< capacity of a leaf
+    static constexpr int kDeepest = 80;                         ///< maximum depth
     /// Largest coordinate of a triangle. Farther boxes would overflow the distances in float, so that every ray visits every
     /// leaf.
     static constexpr float kFarthest = 1e30f;
@@ -46,11 +46,11 @@ public:
 
     /// Eight children and their boxes, relative to the node's own.
     struct alignas(128) Node {
-        float origin[4]; ///< boxes: origin + scale * q
-        float scale[4];
-        Child child[kWidth];
+        float origin[4];         ///< boxes: origin + scale * q
+        float scale[4];          ///< by axis; the fourth number is not used
+        Child child[kWidth];     ///< kNothing where there are fewer
         uint8_t q[2][3][kWidth]; ///< by side (lower, upper) and axis
-        uint8_t spare[16];
+        uint8_t spare[16];       ///< fills two cache lines
     };
     /// Up to six triangles over eight vertices.
     struct alignas(128) Leaf {
@@ -59,23 +59,25 @@ public:
         /// 1), so that one shift of 64-bit lanes aligns all of them; from bit 59: number of triangles.
         uint64_t corners;
         uint32_t id[kLeafTriangles]; ///< triangles, numbered over all shapes
+        /// Number of triangles.
         uint32_t size() const { return uint32_t(corners >> 59); }
         /// Where the three bits of a corner begin in `corners`.
         static int cornerAt(size_t triangle, int corner) { return int(32 * (triangle & 1) + 9 * (triangle >> 1)) + 3 * corner; }
         /// The index of a corner among the vertices of the leaf.
         uint32_t vertex(uint32_t triangle, int corner) const { return uint32_t(corners >> cornerAt(triangle, corner)) & 7; }
+        /// A vertex, in the space of the tree.
         Vec3 point(uint32_t v) const { return {p[0][v], p[1][v], p[2][v]}; }
     };
     static_assert(sizeof(Node) == 128 && sizeof(Leaf) == 128);
 
     /// An exact child. For a part of a shape with its own tree: kPart and the number in Part, and the child in that tree.
     struct Exact {
-        uint32_t shape, prim;
+        uint32_t shape, prim; ///< indices of the shape, and of the primitive in it
     };
     static constexpr uint32_t kPart = 0x80000000u;
     /// A part of a shape with its own tree, as it appears in this one.
     struct Part {
-        geometry::Bounds bounds;
+        geometry::Bounds bounds; ///< camera space
         uint32_t shape;
         Exact as;
     };
@@ -90,7 +92,9 @@ public:
     /// Otherwise null.
     const Node* lastNodes() const { return last_.empty() ? nullptr : last_.data(); }
     struct Vertices {
+        /// By axis, in the order of Leaf::p.
         alignas(32) float p[3][kLeafVertices];
+        /// Vertex v of the leaf.
         Vec3 point(uint32_t v) const { return {p[0][v], p[1][v], p[2][v]}; }
     };
     /// The vertices of a leaf at a key.
@@ -103,20 +107,25 @@ public:
     /// Number of triangles left out because a corner is beyond kFarthest; and a shape that has some.
     size_t beyond() const { return beyond_; }
     uint32_t beyondOf() const { return beyondOf_; }
+    /// The tree: the first node is the root; leaves by the index in Child.
     const Node* nodes() const { return nodes_.data(); }
     const Leaf* leaves() const { return leaves_.data(); }
+    /// There is nothing in it.
     bool empty() const { return nodes_.empty(); }
     /// Up to `most` subtrees that together contain the complete tree, with their boxes; the largest are divided first. Only the
     /// root for a tree with keys.
     std::vector<std::pair<Child, geometry::Bounds>> opened(size_t most) const;
+    /// Of all contents; empty if there are none.
     const geometry::Bounds& bounds() const { return bounds_; }
     bool reachesInto(std::span<const geometry::Plane>) const; ///< Accel::reachesInto(): by the boxes of its leaves
+    /// Memory in bytes.
     size_t bytes() const {
         return nodes_.size() * sizeof(Node) + leaves_.size() * sizeof(Leaf) + exact_.size() * sizeof(Exact) +
                capsules_.size() * sizeof(geometry::Capsule);
     }
     /// What a child of kind kExact means.
     const Exact& exact(uint32_t index) const { return exact_[index]; }
+    /// All exact children, by the same index.
     const Exact* exacts() const { return exact_.data(); }
     /// Capsules around exact primitives, by the same index; null: none. Infinite radius: unknown.
     const geometry::Capsule* capsules() const { return capsules_.empty() ? nullptr : capsules_.data(); }

@@ -6,17 +6,21 @@
 
 namespace alpenglow::accel {
 
+/// Four floats in one register: x, y, z and a lane for other use.
 typedef float Four __attribute__((vector_size(16)));
 
+/// Component-wise minimum and maximum.
 inline Four least(Four a, Four b) { return a < b ? a : b; }
 inline Four most(Four a, Four b) { return a > b ? a : b; }
-inline constexpr float kHuge = 3e38f;
+inline constexpr float kHuge = 3e38f; ///< beyond every coordinate of a box
 
 /// A box under construction, empty at first; the fourth lane is not used.
 struct Box {
-    Four lo{kHuge, kHuge, kHuge, kHuge}, hi{-kHuge, -kHuge, -kHuge, -kHuge};
+    Four lo{kHuge, kHuge, kHuge, kHuge}, hi{-kHuge, -kHuge, -kHuge, -kHuge}; ///< corners
+    /// Extends the box to contain another.
     void add(Four l, Four h) { lo = least(lo, l), hi = most(hi, h); }
     void add(const Box& b) { add(b.lo, b.hi); }
+    /// Half the surface area; 0 if the box is empty.
     double halfArea() const {
         const Four d = hi - lo;
         return d[0] < 0 ? 0 : double(d[0]) * d[1] + double(d[1]) * d[2] + double(d[2]) * d[0];

@@ -5,7 +5,9 @@
 
 namespace alpenglow::accel {
 
+/// Four integers in one register.
 typedef int32_t Whole4 __attribute__((vector_size(16)));
+/// The same number in every lane.
 inline Four all4(float f) { return Four{f, f, f, f}; }
 
 /// By axis: which of `last` + 1 equal steps from `from` on contains the centre. Values without an integer go to the first or last
@@ -16,10 +18,10 @@ inline Whole4 stepsOf(Four twiceCentre, Four from, Four scale, Four last) {
 
 /// The axis and the bins before it; axis -1: nothing divides the centres.
 struct Cut {
-    static constexpr int kBins = 16;
-    int axis = -1, bin = 0, bins = kBins;
-    Four from{}, scale{};
-    Box below, above; ///< of the contents
+    static constexpr int kBins = 16;      ///< most bins of an axis
+    int axis = -1, bin = 0, bins = kBins; ///< references of bins below `bin` go to the left
+    Four from{}, scale{};                 ///< the bin of twice a centre c is (c - from) * scale
+    Box below, above;                     ///< of the contents
     /// Whether binsOf() is below `bin` along the axis.
     bool isBelow(Four twiceCentre) const {
         return !((twiceCentre[axis] - from[axis]) * scale[axis] >= float(bin)); // true for NaN

@@ -7,7 +7,7 @@ namespace alpenglow::accel {
 
 /// A node of the upper levels.
 struct Half {
-    Range range;
+    Range range;               ///< references below the node
     int left = -1, right = -1; ///< -1: a group
 };
 

@@ -8,19 +8,23 @@ namespace alpenglow::accel {
 /// Consecutive triangles, or a primitive of an exact shape; its index, or that of the first triangle, is in the fourth lane of
 /// the lower corner, and their number in that of the upper one.
 struct Ref {
-    Four lo, hi;
+    Four lo, hi; ///< corners of the box
+    /// Index of the first triangle, or of the exact primitive.
     uint32_t id() const {
         const float f = lo[3];
         uint32_t i;
         std::memcpy(&i, &f, 4);
         return i;
     }
+    /// Sets id(), bit by bit: as a number it may be a NaN.
     void setId(uint32_t i) {
         float f;
         std::memcpy(&f, &i, 4);
         lo[3] = f;
     }
+    /// Number of triangles.
     uint32_t many() const { return uint32_t(hi[3]); }
+    /// Twice the centre of the box; the fourth lane is meaningless.
     Four twiceCentre() const { return lo + hi; }
 };
 
@@ -28,7 +32,8 @@ struct Ref {
 struct Range {
     size_t begin = 0, end = 0; ///< of references
     Box box, centres;
-    bool leaf = false;
+    bool leaf = false; ///< becomes a leaf: its references are not divided
+    /// Number of references.
     size_t size() const { return end - begin; }
 };
 

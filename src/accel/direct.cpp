@@ -37,7 +37,7 @@ void DirectTriangles::add(const Triangle& t) {
     rows_.slope[lane] = float(2 * (length(u) + length(v)));
 }
 
-void DirectTriangles::tell(DirectScene& to) const {
+void DirectTriangles::copyTo(DirectScene& to) const {
     static_assert(DirectScene::kTriangles == kMost);
     to.triangles = int(size_);
     to.extent = extent_;

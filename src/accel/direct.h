@@ -15,14 +15,18 @@ class DirectTriangles {
 public:
     static constexpr size_t kMost = 24; ///< triangles; with more the tree is faster
 
+    /// A triangle, and whose it is.
     struct Triangle {
-        Vec3 a, b, c;
-        uint32_t shape, prim;
+        Vec3 a, b, c;         ///< corners, camera space
+        uint32_t shape, prim; ///< indices of the shape, and of the triangle in it
     };
+    /// Adds a triangle; the caller adds at most kMost.
     void add(const Triangle&);
+    /// Number of triangles.
     size_t size() const { return size_; }
+    /// Triangle i, 0 <= i < size(), in the order of add().
     const Triangle& operator[](size_t i) const { return triangles_[i]; }
-    void tell(DirectScene&) const; ///< copies all of them, for block searches (accel/directblock.h)
+    void copyTo(DirectScene&) const; ///< copies all of them, for block searches (accel/directblock.h)
 
     /// Lower bound of t for the hit on triangle i, in lengths of dir; valid for `candidates`.
     static constexpr size_t kWidest = 16, kRoom = (kMost + kWidest - 1) / kWidest * kWidest;

@@ -31,7 +31,7 @@ const DirectSearch& directSearch() {
 
 void Accel::Impl::readyBlocks() {
     const auto scene = std::make_shared<DirectScene>();
-    triangles.tell(*scene);
+    triangles.copyTo(*scene);
     for (int k = 0; k < scene->triangles; ++k) scene->visible[k] = visibility[triangles[size_t(k)].shape];
     scene->balls = int(balls.size());
     for (size_t k = 0; k < balls.size(); ++k) {

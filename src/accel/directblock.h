@@ -8,22 +8,22 @@ namespace alpenglow::accel {
 
 /// The scene: triangles in the layout of DirectTriangles, and bounding spheres of exact shapes.
 struct DirectScene {
-    static constexpr int kTriangles = 24, kBalls = 4;
-    int triangles = 0, balls = 0;
+    static constexpr int kTriangles = 24, kBalls = 4; ///< capacity
+    int triangles = 0, balls = 0;                     ///< number of each
     /// Unit normal and distance of the plane, the two barycentric weights as linear functions of the point, and their slopes.
     float n[3][kTriangles], d[kTriangles], u[3][kTriangles], u0[kTriangles], v[3][kTriangles], v0[kTriangles], slope[kTriangles];
     double planeN[3][kTriangles], planeD[kTriangles];
-    float corner[kTriangles][9];  ///< a, b, c
-    uint32_t visible[kTriangles]; ///< bits shared with Ray::mask
-    float extent = 0;             ///< largest 1-norm of a corner
-    double centre[3][kBalls], radius2[kBalls];
+    float corner[kTriangles][9];               ///< a, b, c
+    uint32_t visible[kTriangles];              ///< bits shared with Ray::mask
+    float extent = 0;                          ///< largest 1-norm of a corner
+    double centre[3][kBalls], radius2[kBalls]; ///< camera space; squared radii
 };
 
 /// New rays that hit all surfaces from both sides.
 struct alignas(64) DirectRays {
-    static constexpr int kSize = 16;
-    float org[3][kSize], dir[3][kSize], tnear[kSize], tfar[kSize];
-    uint32_t mask[kSize];
+    static constexpr int kSize = 16;                               ///< rays of a block
+    float org[3][kSize], dir[3][kSize], tnear[kSize], tfar[kSize]; ///< as in Ray: camera space, t in lengths of dir
+    uint32_t mask[kSize];                                          ///< as Ray::mask
 };
 
 /// Their hits.

@@ -17,15 +17,15 @@ using geometry::ShapeRef;
 
 /// The nearest candidate so far, in units of the ray's direction.
 struct Best {
-    double t;
-    uint32_t shape, prim;
-    double b1, b2;
+    double t;             ///< distance in lengths of Ray::dir
+    uint32_t shape, prim; ///< indices of the shape, and of the primitive in it
+    double b1, b2;        ///< as Hit::b1 and b2
 };
 
 /// A ray under way, and what it has found.
 struct Query {
     const Ray* ray;
-    Best best;
+    Best best;                      ///< nearest hit so far
     bool any;                       // occlusion
     const StopFlag* stop = nullptr; ///< ends long searches in solids; may be null
 };
@@ -67,10 +67,10 @@ inline bool usable(const Ray& r) { return bool(int(r.tnear < r.tfar) & int(usabl
 /// The shapes, their tree or their list, and the tests of candidates.
 struct Accel::Impl {
     std::vector<ShapeRef> shapes;
-    std::vector<uint32_t> visibility;
-    std::vector<Levels> levels; ///< empty: all are visible
-    geometry::Bounds bounds;
-    bool sound = true;
+    std::vector<uint32_t> visibility; ///< a mask for each shape; empty: kAll
+    std::vector<Levels> levels;       ///< empty: all are visible
+    geometry::Bounds bounds;          ///< of all shapes, camera space
+    bool sound = true;                ///< Accel::sound()
     Bvh tree;
     std::unique_ptr<Solids> solids; ///< null: there are none
     /// Whether the shape is a part of a solid.
@@ -80,15 +80,16 @@ struct Accel::Impl {
     std::vector<uint32_t> formNumbers;        ///< by shape: index in forms, or kNone; empty: no forms
     /// Fills `forms`.
     void readyForms();
+    /// The equation of a shape; null: it has none.
     const geometry::QuadricForm* formOf(uint32_t s) const {
         return formNumbers.empty() || formNumbers[s] == kNone ? nullptr : &forms[formNumbers[s]];
     }
 
     /// Scenes of few primitives have no tree.
     struct Ball {
-        uint32_t shape;
-        Vec3d centre;
-        double radius2;
+        uint32_t shape; ///< index in shapes
+        Vec3d centre;   ///< camera space
+        double radius2; ///< squared radius
     }; ///< an exact shape and its bounding sphere
     bool direct = false;
     DirectTriangles triangles;
@@ -118,6 +119,7 @@ struct Accel::Impl {
     void nearestInBlocks(std::span<const Ray>, std::span<Hit>) const;
     /// Accel::occluded() by blocks.
     void anyInBlocks(std::span<const Ray>, std::span<uint8_t>) const;
+    /// Search one block; `rays`: those of it that count, as bits.
     void nearestInBlock(const DirectRays&, uint32_t rays, const float* time, Hit*) const;
     void anyInBlock(const DirectRays&, uint32_t rays, const float* time, uint8_t*) const;
 
@@ -160,6 +162,7 @@ struct Accel::Impl {
         q.best = {t, s, prim, b1, b2};
         return true;
     }
+    /// The same where the normal is that of the shape at the hit.
     bool take(Query& q, uint32_t s, uint32_t prim, double t, double b1, double b2) const {
         return take(q, s, prim, t, b1, b2, [&] { return dot(shapes[s]->hitNormal(prim, b1, b2), Vec3d(q.ray->dir)); });
     }
@@ -211,8 +214,8 @@ struct Accel::Impl {
 
     /// A geometry in its own space, for all its instances.
     struct Geometry {
-        ShapeRef shape;
-        Bvh tree; ///< empty: one exact primitive
+        ShapeRef shape; ///< in its own space
+        Bvh tree;       ///< empty: one exact primitive
     };
     std::vector<std::unique_ptr<Geometry>> geometries;
     std::vector<uint32_t> geometryOf; ///< by shape: index in geometries, or kNone; empty: no instances
@@ -223,10 +226,10 @@ struct Accel::Impl {
     struct alignas(128) Place {
         geometry::Affine in; ///< to the geometry's space, if it does not move
         const Geometry* geometry;
-        const geometry::Placed* placed;
+        const geometry::Placed* placed;       ///< the instance
         const geometry::Deforming* deforming; ///< or null
-        uint32_t shape;
-        bool moves;
+        uint32_t shape;                       ///< index in shapes
+        bool moves;                           ///< its place changes during the shutter
     };
     std::vector<Place> places; ///< Bvh::Exact::shape of a part is an index in it
     bool placesMove = false;   ///< some of them move or deform
@@ -242,14 +245,16 @@ struct Accel::Impl {
     /// A ray in the space of an instanced geometry.
     struct Inside {
         const Geometry* geometry;
-        const geometry::Placed* place;
-        uint32_t shape;
-        Vec3d org, dir;
+        const geometry::Placed* place; ///< the instance
+        uint32_t shape;                ///< index in shapes of the instance
+        Vec3d org, dir;                ///< in the space of the geometry; t is that of the ray in camera space
     };
     /// An instanced geometry without a tree; others are traversed (bvh_walk.inc).
     bool intersectPlaced(Query&, uint32_t s) const;
+    /// One triangle of an instanced geometry.
     bool intersectInside(Query&, const Inside&, uint32_t prim, const Vec3d& a, const Vec3d& b, const Vec3d& c) const;
     bool intersectInside(Query&, const Inside&, uint32_t prim) const; ///< one primitive of an exact geometry
+    /// sameCrossing() for corners in the space of the geometry.
     bool sameCrossing(const Query&, const Inside&, double t, const Vec3d corner[3]) const;
 
     /// One ray, by tree or list.
@@ -258,6 +263,7 @@ struct Accel::Impl {
     bool occludedOne(const Ray&) const;
     /// plain: with the baseline instruction set.
     void walkNearest(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
+    /// The same for coherent rays, and for occlusion.
     void walkNearestTogether(std::span<const Ray>, std::span<Hit>, bool plain = false, const StopFlag* stop = nullptr) const;
     void walkAny(std::span<const Ray>, std::span<uint8_t>, const StopFlag* stop = nullptr) const;
 };

@@ -40,7 +40,7 @@ void limitMemory([[maybe_unused]] uint64_t bytes) {
 #endif
 }
 
-[[noreturn]] void child(const std::string& file, const char* name, uint64_t memory, const ChildWork& work, int to, int tell) {
+[[noreturn]] void child(const std::string& file, const char* name, uint64_t memory, const ChildWork& work, int to, int errors) {
     char why[kWhy] = "";
     int code = kNoModule;
     const rlimit noCore{0, 0};
@@ -55,7 +55,7 @@ void limitMemory([[maybe_unused]] uint64_t bytes) {
         std::strncpy(why, text ? text : "it has no function of ours", kWhy - 1);
     }
     for (size_t done = 0, n = std::strlen(why); done < n;) {
-        const ssize_t k = write(tell, why + done, n - done);
+        const ssize_t k = write(errors, why + done, n - done);
         if (k <= 0) break;
         done += size_t(k);
     }

@@ -11,9 +11,11 @@ namespace alpenglow {
 
 /// A descriptor that is closed.
 struct Descriptor {
-    int fd = -1;
+    int fd = -1; ///< -1: none
     Descriptor() = default;
+    /// Takes over the descriptor.
     explicit Descriptor(int f) : fd(f) {}
+    /// Leaves -1 behind.
     Descriptor(Descriptor&& o) noexcept : fd(o.fd) { o.fd = -1; }
     Descriptor& operator=(Descriptor&&) = delete;
     ~Descriptor();
@@ -21,6 +23,7 @@ struct Descriptor {
 
 /// How a child ended.
 struct ChildResult {
+    /// Whether the work was done, or what prevented it. Late: the time limit was reached.
     enum class End { Done, NoChild, NoModule, Failed, Signal, Late } end = End::NoChild;
     Descriptor written; ///< what the module wrote, in memory
     std::string why;    ///< NoChild, NoModule, Failed: in words; may be ""

@@ -46,7 +46,7 @@ enum class Rie : int {
 
 /// A position in a text; line and column count from 1, 0 = unknown. Columns count bytes.
 struct SourcePlace {
-    std::string file;
+    std::string file; ///< as the user named it; "": unknown
     int line = 0, column = 0;
 };
 
@@ -59,17 +59,17 @@ struct FixIt {
 
 /// One message to the user: what is wrong, where, and what would help.
 struct Diagnostic {
-    Severity severity = Severity::Error;
-    Rie code = Rie::NoError;
-    SourcePlace place;
+    Severity severity = Severity::Error; ///< how serious
+    Rie code = Rie::NoError;             ///< RI error code
+    SourcePlace place;                   ///< in the text of the user; unknown if its line is 0
     std::string message;
     std::string hint;       ///< "did you mean ...", or empty
     std::string sourceLine; ///< the offending line, for the caret; or empty
     std::string id{};       ///< stable identifier of the message ("no-matching-call"), independent of its text; or empty
     int length = 0;         ///< bytes of the line that the message is about, from the column on; 0 = unknown
     std::vector<std::string> notes{}; ///< candidates and why they were rejected, one per line
-    std::vector<FixIt> fixes{};
-    bool always = false;  ///< a note that is shown without -v
+    std::vector<FixIt> fixes{};       ///< changes that would mend it
+    bool always = false;              ///< a note that is shown without -v
     bool ignored = false; ///< ErrorHandler "ignore" was in effect: shown with -v only, and not counted. Diagnostics sets it
     std::string once{};   ///< key of Diagnostics::reportOnce(), which sets it; empty: report()
 };
@@ -81,6 +81,7 @@ std::string toString(const Diagnostic&);
 /// Collects diagnostics, counts them, and passes each to a handler. Thread safe.
 class Diagnostics {
 public:
+    /// Receives each diagnostic, in the thread that reports it, one at a time.
     using Handler = std::function<void(const Diagnostic&)>;
     /// Without a handler diagnostics are only stored.
     explicit Diagnostics(Handler h = {});
@@ -90,6 +91,7 @@ public:
     /// Reports only the first diagnostic with this key ("unknown things are reported once each").
     void reportOnce(const std::string& key, Diagnostic d);
     int errors() const; ///< Error and Severe, without ignored ones
+    /// Without ignored ones.
     int warnings() const;
     /// From now on warnings and errors are ignored (RiErrorIgnore; RISpec 3.2, 7.2), or no more. Severe ones never are.
     void ignore(bool on);

@@ -12,6 +12,7 @@ namespace alpenglow {
 /// A digest of data in pieces: equal to that of the complete data.
 class Digest {
 public:
+    /// Of no data yet.
     Digest();
     /// Appends a piece of the data.
     void add(const void* data, size_t bytes);

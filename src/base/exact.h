@@ -9,7 +9,7 @@ namespace alpenglow::exact {
 
 /// A sine and a cosine of one angle.
 struct SinCos {
-    double sin, cos;
+    double sin, cos; ///< of the same angle
 };
 /// Radians. Error below 1.5 ulp for |x| <= 1e3, 2.5 ulp for |x| <= 1e6; beyond, that of x reduced by the rounded 2 pi. Infinity
 /// gives NaN.

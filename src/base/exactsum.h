@@ -6,6 +6,7 @@
 
 namespace alpenglow {
 
+/// 128-bit integers, a compiler extension.
 using Int128 = __int128;
 using UInt128 = unsigned __int128;
 
@@ -50,12 +51,14 @@ public:
         addWide(o.low_, o.top_);
         saturated_ |= o.saturated_;
     }
+    /// The sum, rounded to double or float.
     double toDouble() const {
         Int128 low = Int128(low_);
         if (top_ == (low < 0 ? -1 : 0)) return fromFixed<64>(low);
         return (double(top_) * 0x1p128 + double(low_)) * 0x1p-64;
     }
     float toFloat() const { return float(toDouble()); }
+    /// Whether a term was clamped.
     bool saturated() const { return saturated_; }
 
 private:

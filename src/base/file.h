@@ -38,6 +38,7 @@ public:
     /// Whether such a file can be written now: opens it, writes a disk block and removes it; missing folders remain. Returns
     /// false after an error, which is reported.
     static bool canBeWritten(const std::string& name, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+    /// Leaves an object that can only be destroyed.
     OutputFile(OutputFile&&) noexcept;
     OutputFile& operator=(OutputFile&&) = delete;
     ~OutputFile();
@@ -52,6 +53,7 @@ public:
     uint64_t tell();
     /// The bytes of the file so far; the position stays.
     uint64_t size();
+    /// Whether nothing has failed so far.
     bool ok() const { return error_ == 0; }
     /// Flushes, syncs, renames. Returns false after an error, which is reported; the old file is then intact and the temporary
     /// file removed.
@@ -87,7 +89,7 @@ std::vector<std::string> splitSearchPath(const std::string& path, const std::vec
 
 /// Result of a lookup, and how it differs from the name.
 struct FoundFile {
-    std::string path;
+    std::string path;          ///< where the file is
     bool otherCase = false;    ///< letters differ from the name on disk
     bool baseNameOnly = false; ///< the folders of the name were ignored
 };

@@ -208,7 +208,8 @@ constexpr OptionDescription kHiderParameters[] = {
     {"guide", "int", "1", "0", Used,
      "path: 1: before the first sample, photons find where light reaches surfaces by way of mirrors and clear glass, "
      "and paths find which parts of flat lamps and skies are visible from where; rays and light samples follow that; "
-     "shadow rays that bring little are traced at random only. Less noise or less time, and no bias. 0: none of these."},
+     "shadow rays that bring little are traced at random only. Less noise or less time, and no bias. Points also search for "
+     "light of point, spot and distant lights by mirrors and clear glass, which no ray finds. 0: none of these."},
     {"incremental", "", "", "", Ignored, "PRMan; --checkpoint, --spp and --noise say how a picture grows"},
     {"integrationmode", "", "", "", Ignored, "PRMan; the hider path is the way here"},
     {"jitter", "int", "1", "0", Used,

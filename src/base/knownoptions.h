@@ -19,11 +19,11 @@ enum class Effect {
 
 /// One name of Option "category" "name", of Attribute, or of a parameter of Hider or Display.
 struct OptionDescription {
-    std::string_view name;     ///< "category:name" for options and attributes, the bare name for parameters
-    std::string_view type;     ///< as RIB declares it ("int", "float[2]"); "" = numbers and strings are both taken
-    std::string_view standard; ///< what holds when nothing is set, for people; "" = nothing
-    std::string_view sample;   ///< a value as RIB writes it; "" for ignored names
-    Effect effect = Effect::Ignored;
+    std::string_view name;           ///< "category:name" for options and attributes, the bare name for parameters
+    std::string_view type;           ///< as RIB declares it ("int", "float[2]"); "" = numbers and strings are both taken
+    std::string_view standard;       ///< what holds when nothing is set, for people; "" = nothing
+    std::string_view sample;         ///< a value as RIB writes it; "" for ignored names
+    Effect effect = Effect::Ignored; ///< whether the program acts on it
     std::string_view doc; ///< what it does here, one or two sentences; of ignored names, whose they are, and why nothing is done
     /// What attribute(), option() and RIB's If give where nothing is set, as RIB writes it; "": they find nothing.
     std::string_view answer = {};
@@ -35,7 +35,7 @@ struct OptionDescription {
 
 /// One hider.
 struct HiderDescription {
-    std::string_view name, doc;
+    std::string_view name, doc; ///< the hider's name; text of the manual
 };
 
 /// Sorted by name. The category "user" takes every name, so it is in neither table.

@@ -4,6 +4,7 @@
 
 namespace alpenglow::known {
 
+/// The values of Effect without a prefix, for the tables.
 using enum Effect;
 
 /// Renderers whose names are accepted without an effect.

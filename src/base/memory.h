@@ -36,6 +36,7 @@ size_t defaultMemoryLimit();
 /// (ulimit -d). 0 bytes: no limit.
 class MemoryLimit {
 public:
+    /// Sets the limit; the destructor restores the old one.
     MemoryLimit(size_t bytes, int threads);
     ~MemoryLimit();
     MemoryLimit(const MemoryLimit&) = delete;

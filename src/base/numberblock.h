@@ -7,9 +7,10 @@ namespace alpenglow {
 
 /// Rows of requests for numbers, and the results. `stream`: call site, and whether a pair or a single number (x).
 struct alignas(64) NumberBlock {
-    static constexpr int kSize = 16;
+    static constexpr int kSize = 16; ///< requests of a block
+    /// Keys of the requests, as in Sampler::get2().
     uint32_t low[kSize], high[kSize], index[kSize], vertex[kSize], stream[kSize], occurrence[kSize];
-    float x[kSize], y[kSize];
+    float x[kSize], y[kSize]; ///< results in [0, 1)
 };
 
 /// Fills x and y of the blocks.

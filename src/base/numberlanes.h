@@ -25,6 +25,7 @@ public:
     Vec2 pair(size_t i) const { return {blocks_[i / kSize].x[i % kSize], blocks_[i / kSize].y[i % kSize]}; }
     /// The result of request i, of one number; valid after draw().
     float one(size_t i) const { return blocks_[i / kSize].x[i % kSize]; }
+    /// Number of requests.
     size_t size() const { return count_; }
     /// Forgets all requests; memory is kept.
     void clear() { count_ = 0; }

@@ -57,7 +57,7 @@ template <class U> constexpr U sobol1Reversed(U i) {
 
 /// 128 bits as four words; U: uint32_t or a vector of them.
 template <class U> struct Words4 {
-    U x, y, z, w;
+    U x, y, z, w; ///< from the first to the last word
 };
 
 /// One round of pcg4d, without its shifts.
@@ -91,7 +91,8 @@ template <class U> constexpr Words4<U> streamWords(U low, U high, U vertex, U si
 
 /// Scrambles of one stream: the words of its key, and four more derived from them.
 template <class U> struct Scrambles {
-    Words4<U> s, more;
+    Words4<U> s, more; ///< as mixWords() and moreWords() give them
+    /// From streamWords().
     constexpr explicit Scrambles(const Words4<U>& words) : s(words), more(moreWords<U>(words)) {}
     /// The sample's index, reversed, in the order of the stream: a nested scramble, which keeps aligned blocks of 2^m samples
     /// together. (Its first digits are 0 for all samples of a pixel: no coins.)

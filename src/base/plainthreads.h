@@ -16,6 +16,7 @@ class TaskGroup {
 public:
     ~TaskGroup() { join(); }
 
+    /// Starts a task, which may run before this returns.
     template <class Task> void run(Task task) {
         if (!mayStart()) return attempt(task);
         const std::lock_guard lock(mutex_);
@@ -24,6 +25,7 @@ public:
             --running();
         });
     }
+    /// Returns when all tasks have ended. Throws what the first failing task threw.
     void wait() {
         join();
         const std::lock_guard lock(mutex_);

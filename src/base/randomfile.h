@@ -12,6 +12,7 @@ namespace alpenglow {
 /// Open for reading during its lifetime. Pipes, devices and folders are not read: regular() is false for them.
 class RandomFile {
 public:
+    /// Opens the file; on failure regular() is false.
     explicit RandomFile(const std::string& path) : fd_(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)) {
         struct stat s;
         if (fd_ >= 0 && fstat(fd_, &s) == 0 && S_ISREG(s.st_mode)) size_ = uint64_t(s.st_size), regular_ = true;
@@ -21,6 +22,7 @@ public:
     }
     RandomFile(const RandomFile&) = delete;
     RandomFile& operator=(const RandomFile&) = delete;
+    /// Open, and a regular file.
     bool regular() const { return regular_; }
     uint64_t size() const { return size_; } ///< bytes, when it was opened
     /// Reads the `n` bytes from offset `at`. Returns false if they do not exist, also if the file has become shorter; allocates

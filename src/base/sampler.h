@@ -18,12 +18,13 @@
 
 namespace alpenglow {
 
-inline constexpr uint32_t kReplicas = 2;
+inline constexpr uint32_t kReplicas = 2; ///< independent sequences of a pixel (above)
 
 /// A seed, hashed once for all pixels.
 struct SeedKey {
+    /// seed: any number.
     explicit SeedKey(uint64_t seed) : key(mix64(seed + 0x6a09e667f3bcc909ull)) {}
-    uint64_t key;
+    uint64_t key; ///< the hashed seed
 };
 
 class SampleNumbers;
@@ -55,6 +56,7 @@ private:
 /// The numbers of one sample of a pixel: equal to Sampler's for that sampleIndex, with common parts computed once.
 class SampleNumbers {
 public:
+    /// Of that sample of the pixel.
     SampleNumbers(const Sampler& s, uint32_t sampleIndex) : index_(sampleIndex / kReplicas) {
         const uint64_t key = mix64(s.seed_ ^ (s.pixel_ | sampleIndex % kReplicas));
         low_ = uint32_t(key);
@@ -85,6 +87,7 @@ public:
 
     /// The key of this sample for NumberBlock: a stream is its site twice, with kSingle added for one number.
     static constexpr uint32_t kSingle = 1;
+    /// For NumberBlock: the key of pixel and replica in two words, and the index of the point in its sequence.
     uint32_t low() const { return low_; }
     uint32_t high() const { return high_; }
     uint32_t index() const { return index_; }

@@ -9,6 +9,7 @@ namespace alpenglow {
 /// bytes at its address, and a signal handler may set it (it is free of locks).
 class StopFlag {
 public:
+    /// Read and written like an integer; all three are atomic.
     constexpr StopFlag(int32_t v = 0) : value_(v) {}
     operator int32_t() const { return value_.load(std::memory_order_relaxed); }
     StopFlag& operator=(int32_t v) {

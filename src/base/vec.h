@@ -6,13 +6,18 @@ namespace alpenglow {
 
 /// Three components; a point, direction, normal or colour, by context. No space is implied.
 template <class T> struct Vec3T {
-    T x{}, y{}, z{};
+    T x{}, y{}, z{}; ///< 0 by default
     constexpr Vec3T() = default;
+    /// S in every component.
     constexpr explicit Vec3T(T s) : x(s), y(s), z(s) {}
     constexpr Vec3T(T a, T b, T c) : x(a), y(b), z(c) {}
+    /// Converts each component.
     template <class U> constexpr explicit Vec3T(const Vec3T<U>& o) : x(T(o.x)), y(T(o.y)), z(T(o.z)) {}
+    /// Component i: 0 is x, 1 is y, all others z.
     constexpr T& operator[](int i) { return i == 0 ? x : i == 1 ? y : z; }
+    /// Component i, as above.
     constexpr T operator[](int i) const { return i == 0 ? x : i == 1 ? y : z; }
+    /// Component by component.
     constexpr Vec3T operator-() const { return {-x, -y, -z}; }
     constexpr Vec3T& operator+=(const Vec3T& o) {
         x += o.x;
@@ -53,6 +58,7 @@ template <class T> struct Vec3T {
     friend constexpr bool operator==(const Vec3T& a, const Vec3T& b) { return a.x == b.x && a.y == b.y && a.z == b.z; }
 };
 
+/// Vectors of single precision, and of double.
 using Vec3 = Vec3T<float>;
 using Vec3d = Vec3T<double>;
 using Color = Vec3T<float>; ///< linear RGB, Rec. 709 primaries; radiance where nothing else is said
@@ -80,7 +86,7 @@ template <class T> constexpr T maxComponent(const Vec3T<T>& c) {
 
 /// Two numbers: a sample, or a position on a surface or in a map.
 struct Vec2 {
-    float x = 0, y = 0;
+    float x = 0, y = 0; ///< 0 by default
 };
 
 /// |x|, |y|, |z|.
@@ -91,6 +97,7 @@ template <class T> Vec3T<T> normalizeOr(const Vec3T<T>& a, const Vec3T<T>& fallb
     return l > 0 && std::isfinite(l) ? a / l : fallback;
 }
 
+/// Pi, in double and in float.
 inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr float kFloatPi = float(kPi);
 

@@ -13,9 +13,9 @@ namespace alpenglow {
 
 /// An element and everything in it.
 struct XmlElement {
-    std::string name;
+    std::string name;                                            ///< with its prefix
     std::vector<std::pair<std::string, std::string>> attributes; ///< in their order, entities replaced
-    std::vector<XmlElement> children;
+    std::vector<XmlElement> children;                            ///< elements in it, in their order
     std::string text;         ///< what stands in it outside of its children, entities replaced, without blanks at both ends
     int line = 0, column = 0; ///< of its '<', from 1
     /// The value of an attribute; "" when there is none.
@@ -26,9 +26,9 @@ struct XmlElement {
 
 /// How a file is read, and how large it may be.
 struct XmlRules {
-    bool anyEndTag = false; ///< an end tag ends the innermost element, whatever its name: some programs write wrong ones
-    size_t depth = 64;      ///< elements in each other
-    size_t elements = 1'000'000;
+    bool anyEndTag = false;      ///< an end tag ends the innermost element, whatever its name: some programs write wrong ones
+    size_t depth = 64;           ///< elements in each other
+    size_t elements = 1'000'000; ///< of the whole text
     size_t bytes = size_t(256) << 20; ///< of the text
 };
 

@@ -13,6 +13,7 @@ double fresnelInside(double cosine, double index);
 /// scattering, by quadrature.
 class AlbedoInversion {
 public:
+    /// index: of refraction of the inside relative to the outside, > 0.
     explicit AlbedoInversion(double index);
     /// Fraction of the entering light that leaves again, for a single-scattering albedo from 0 to 1; error below 1e-5.
     double reflectance(double albedo) const;
@@ -21,6 +22,7 @@ public:
     /// Means of the internal reflectance over the hemisphere: 2 and 3 times the integrals of F cos and F cos^2.
     double first() const { return first_; }
     double second() const { return second_; }
+    /// As given to the constructor.
     double index() const { return index_; }
 
 private:

@@ -7,6 +7,7 @@ namespace alpenglow::bsdf {
 /// Spread of light below a plane that it enters at one point: diffusion with two sources. Lengths in current space.
 class Dipole {
 public:
+    /// better: the dipole of 2012. absorption, scattering (reduced): coefficients per unit of length.
     Dipole(const AlbedoInversion&, bool better, double absorption, double scattering);
     /// Exitant flux per unit of area at a distance from where unit flux enters.
     double at(double distance) const;

@@ -17,21 +17,21 @@ namespace alpenglow::bsdf {
 
 /// Parameters of the distributions shared by trace() and bsdf() (3Delight manual, 6.4.5.2). Current space.
 struct DistributionParams {
-    float roughness = 0, roughnessv = 0;
-    Vec3 udir;
-    Color eta{0}, k{0};       ///< index of refraction and extinction; glass-ggx and hair: the first channel of eta
-    Color absorption{0};      ///< hair
-    std::vector<float> lobes; ///< glass-ggx: weights of reflection and refraction; hair: four numbers for each lobe
-    int part = -1;            ///< glass-ggx: 0 reflection, 1 refraction; hair: the lobe; -1: all
+    float roughness = 0, roughnessv = 0; ///< 0 to 1, along udir and across it
+    Vec3 udir;                           ///< direction along the surface; zero: any
+    Color eta{0}, k{0};                  ///< index of refraction and extinction; glass-ggx and hair: the first channel of eta
+    Color absorption{0};                 ///< hair
+    std::vector<float> lobes;            ///< glass-ggx: weights of reflection and refraction; hair: four numbers for each lobe
+    int part = -1;                       ///< glass-ggx: 0 reflection, 1 refraction; hair: the lobe; -1: all
 };
 
 /// Parameters of a lobe at one vertex, in current space. Each kind uses some of them.
 struct LobeParams {
-    Vec3 axis;    ///< normal, mirror or cone direction; unit
-    Vec3 wo;      ///< toward the viewer; unit
-    Vec3 horizon; ///< normal of the plane that clips the lobe; used if hasHorizon
-    float a = 0;  ///< roughness, exponent or cone half angle
-    bool hasHorizon = false;
+    Vec3 axis;                                      ///< normal, mirror or cone direction; unit
+    Vec3 wo;                                        ///< toward the viewer; unit
+    Vec3 horizon;                                   ///< normal of the plane that clips the lobe; used if hasHorizon
+    float a = 0;                                    ///< roughness, exponent or cone half angle
+    bool hasHorizon = false;                        ///< `horizon` counts
     std::shared_ptr<const DistributionParams> more; ///< required by kinds with `distribution`; null for others
 };
 
@@ -45,11 +45,12 @@ struct LobeValue {
 /// A lobe by name, with its description for the manual and its code.
 struct LobeKind {
     std::string_view name;
-    std::string_view doc;
+    std::string_view doc;      ///< for the manual
     bool distribution = false; ///< reads LobeParams::more
     int index = 0;             ///< in lobeKinds() and in lobeLanes()
     int traits = 0;            ///< LobeTrait
     float eta = 0;             ///< index of refraction of a call that gives none
+    /// Whether it has this trait.
     bool has(LobeTrait t) const { return (traits & t) != 0; }
 
     // A single evaluation; see Bsdf.
@@ -59,6 +60,7 @@ struct LobeKind {
     float pdf(const LobeParams&, Vec3 w) const;
     /// False: there is no direction.
     bool sample(const LobeParams&, Vec2 u, Vec3& w) const;
+    /// About the fraction that the lobe reflects, for selection; half its width in radians, for footprints.
     float albedo(const LobeParams&) const;
     float spread(const LobeParams&) const;
 };
@@ -66,6 +68,7 @@ struct LobeKind {
 /// A single lobe.
 class Bsdf {
 public:
+    /// kind: of lobeKinds(), outlives the lobe.
     Bsdf(const LobeKind&, const LobeParams&);
     /// w is unit.
     LobeValue value(const Vec3& w) const;
@@ -92,8 +95,9 @@ class BsdfBatch {
 public:
     /// Position of a lobe.
     struct Place {
-        int kind = 0, at = 0;
+        int kind = 0, at = 0; ///< index of the kind, and of the lobe among those of its kind
     };
+    /// Empty.
     BsdfBatch();
     /// Removes all lobes; memory is kept.
     void clear();

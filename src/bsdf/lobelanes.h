@@ -61,8 +61,8 @@ enum DrawnRow : int { kRowDirection = 0, kRowDrawn = 3, kDrawnRows = 4 };
 /// A lobe kind at one width. `lanes`: bit mask of the lobes in the block to process; rows of other lanes are undefined, before
 /// and after.
 struct LobeLanes {
-    const char* name;
-    const char* doc;
+    const char* name;  ///< as in shaders
+    const char* doc;   ///< for the manual
     bool distribution; ///< shared by trace() and bsdf()
     int needs;         ///< LobeNeed; other rows are undefined
     int traits;        ///< LobeTrait
@@ -77,7 +77,7 @@ struct LobeLanes {
 /// The code of all lobes for one width.
 struct LobeLanesList {
     const LobeLanes* lobes = nullptr; ///< in order of lobeKinds()
-    int count = 0;
+    int count = 0;                    ///< number of lobes
 };
 
 /// The lobes at 4, 8 or 16 lanes; empty if this processor cannot run that width. 1: for blocks of one lobe, whose rows are single

@@ -8,7 +8,8 @@ namespace alpenglow::bsdf {
 
 /// Orthonormal basis about a unit normal, without a branch and without trigonometry (Duff et al., JCGT 2017).
 struct Basis {
-    Vec3 t, u, n;
+    Vec3 t, u, n; ///< n is the normal
+    /// N_: unit.
     explicit Basis(Vec3 n_) : n(n_) {
         float s = std::copysign(1.f, n.z), a = -1 / (s + n.z), b = n.x * n.y * a;
         t = {1 + s * n.x * n.x * a, s * b, -s * n.x};

@@ -32,7 +32,7 @@ public:
     void end(const SourcePlace& where) override {
         interpreter_.finish(where);
         interpreter_.endPrograms();
-        renderer_.settle();
+        renderer_.waitForFrames();
         renderer_.finish();
         renderer_.writeStats();
     }

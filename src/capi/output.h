@@ -7,9 +7,11 @@
 
 namespace alpenglow::capi {
 
+/// Where the calls of a context go.
 class Output {
 public:
     virtual ~Output() = default;
+    /// The receiver of the calls; valid as long as the output.
     virtual ri::Target& target() = 0;
     /// RiEnd: closes what is open, and ends the work.
     virtual void end(const SourcePlace&) = 0;

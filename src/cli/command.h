@@ -30,7 +30,7 @@ enum Status : int {
 /// What each status means, for help texts.
 struct StatusText {
     Status status;
-    const char* meaning;
+    const char* meaning; ///< for help texts
 };
 std::span<const StatusText> statusTexts(); ///< in the order of their numbers
 

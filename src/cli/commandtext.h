@@ -12,14 +12,14 @@ namespace alpenglow::cli {
 
 /// An option or argument.
 struct OptionText {
-    std::vector<std::string> names;   ///< "-o", "--format"; of a positional argument its name alone
-    std::string argument;             ///< "FILE"; "" for a flag
-    std::vector<std::string> choices; ///< the values that are taken, where the parser has a list
-    std::string help, group;
-    bool positional = false, required = false;
-    bool optionalArgument = false; ///< the argument may be missing
-    bool attached = false;         ///< the argument must follow the name and =, as in --preview=kitty
-    bool repeated = false;         ///< takes several words, or may be given several times
+    std::vector<std::string> names;            ///< "-o", "--format"; of a positional argument its name alone
+    std::string argument;                      ///< "FILE"; "" for a flag
+    std::vector<std::string> choices;          ///< the values that are taken, where the parser has a list
+    std::string help, group;                   ///< text, and heading in the help
+    bool positional = false, required = false; ///< an argument by its position; it must be given
+    bool optionalArgument = false;             ///< the argument may be missing
+    bool attached = false;                     ///< the argument must follow the name and =, as in --preview=kitty
+    bool repeated = false;                     ///< takes several words, or may be given several times
 
     bool takesFile() const;    ///< a file name
     bool takesFolders() const; ///< a folder, or several separated by :
@@ -28,15 +28,15 @@ struct OptionText {
 
 /// A subcommand.
 struct CommandText {
-    std::string name, description, footer;
-    std::vector<OptionText> options; ///< positionals among them, in the order of the command line
+    std::string name, description, footer; ///< what follows the options in the help
+    std::vector<OptionText> options;       ///< positionals among them, in the order of the command line
 };
 
 /// The whole command line.
 struct ProgramText {
-    std::string name, description, footer;
-    std::vector<OptionText> options;
-    std::vector<CommandText> commands;
+    std::string name, description, footer; ///< what follows the subcommands in the help
+    std::vector<OptionText> options;       ///< of every subcommand
+    std::vector<CommandText> commands;     ///< in the order of the help
 };
 
 /// The description of a parser with all its subcommands.

@@ -54,8 +54,8 @@ void addDiff(CLI::App& app, int* status) {
               "compared,\n"
               "5 when the difference cannot be written.");
     c->callback([a, status] {
-        OrderedJson said, found = OrderedJson::object();
-        Diagnostics diags(printerOr(a->json, said));
+        OrderedJson reported, found = OrderedJson::object();
+        Diagnostics diags(printerOr(a->json, reported));
         if (const std::string fault = a->output.empty() ? "" : faultOfPictureName(a->output, false); !fault.empty())
             throw CLI::ValidationError("-o", fault);
         auto first = display::readImage(a->a, diags), second = display::readImage(a->b, diags);
@@ -69,7 +69,7 @@ void addDiff(CLI::App& app, int* status) {
         } else {
             *status = kNothingRendered;
         }
-        if (a->json) printReport(std::move(found), std::move(said));
+        if (a->json) printReport(std::move(found), std::move(reported));
     });
 }
 

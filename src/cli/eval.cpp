@@ -32,8 +32,8 @@ void addEval(CLI::App& app, int* status) {
         "geometry.\n\nExamples:\n  alpenglow eval 'noise(P + 1.5)'\n"
         "  alpenglow eval --setup 'color c = (1, .5, 0);' 'ctransform(\"hsv\", c)'");
     c->callback([a, status] {
-        nlohmann::ordered_json said;
-        Diagnostics diags(printerOr(a->json, said));
+        nlohmann::ordered_json reported;
+        Diagnostics diags(printerOr(a->json, reported));
         rsl::ShaderCompiler::Settings settings;
         settings.allowExec = a->allowExec;
         settings.dialect = a->dialect;
@@ -52,7 +52,7 @@ void addEval(CLI::App& app, int* status) {
             nlohmann::ordered_json found = {{"ok", e.ok}, {"printed", e.printed}};
             if (e.ok && e.type.base != shadeops::Base::Void)
                 found.update({{"type", toString(e.type)}, {"text", e.text}, {"numbers", e.numbers}});
-            printReport(std::move(found), std::move(said));
+            printReport(std::move(found), std::move(reported));
         } else {
             std::fputs(printable(e.printed).c_str(), stdout);
         }

@@ -244,7 +244,7 @@ std::optional<Facts> fileFacts(const std::string& file, Diagnostics& d) {
         return f;
     }
     if (head.starts_with("##RenderMan")) return done(addScene(f, file, d));
-    for (const Diagnostic& said : quiet.all()) d.report(said);
+    for (const Diagnostic& reported : quiet.all()) d.report(reported);
     return {};
 }
 

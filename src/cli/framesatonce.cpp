@@ -19,7 +19,7 @@ FramesAtOnce::FramesAtOnce(int most, const render::RenderSettings& s, Diagnostic
     };
     watchStopSignal(use.stopSignal); // before the first process: it would end one that has just begun
     processes_.emplace(std::move(use), messages);
-    said_.setHandler([this](const Diagnostic& d) { processes_->say(d); });
+    reported_.setHandler([this](const Diagnostic& d) { processes_->say(d); });
 }
 
 void FramesAtOnce::begin(bool alone) {

@@ -19,14 +19,14 @@ public:
     /// Null: frames are drawn one by one.
     render::FrameProcesses* processes() { return processes_ ? &*processes_ : nullptr; }
     /// Messages reported here are printed in the order of the frames.
-    Diagnostics& said() { return processes_ ? said_ : messages_; }
+    Diagnostics& reported() { return processes_ ? reported_ : messages_; }
     /// Sets the reader, which must outlive all frames.
     void setReader(ri::RibReader& r) { reader_ = &r; }
 
 private:
     void begin(bool alone);
     Diagnostics& messages_;
-    Diagnostics said_;
+    Diagnostics reported_;
     std::optional<render::FrameProcesses> processes_;
     std::optional<MemoryLimit> share_; ///< in a process: of the run's memory
     size_t memory_;                    ///< of the run, bytes; 0: unlimited

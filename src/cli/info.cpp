@@ -88,10 +88,10 @@ bool namesOtherFile(const std::string& name) {
 }
 
 int otherFile(const InfoArguments& a) {
-    OrderedJson said;
-    Diagnostics diags(printerOr(a.json, said));
+    OrderedJson reported;
+    Diagnostics diags(printerOr(a.json, reported));
     const auto facts = fileFacts(a.file, diags);
-    if (a.json) printReport(facts.value_or(OrderedJson::object()), std::move(said));
+    if (a.json) printReport(facts.value_or(OrderedJson::object()), std::move(reported));
     else if (facts) std::fputs(printable(factsText(*facts)).c_str(), stdout);
     if (!facts) return kNothingRendered;
     return diags.errors() > 0 ? kDoneWithErrors : kDone;

@@ -30,16 +30,16 @@ OrderedJson diagnosticJson(const Diagnostic& d) {
     return j;
 }
 
-Diagnostics::Handler printerOr(bool json, OrderedJson& said) {
+Diagnostics::Handler printerOr(bool json, OrderedJson& reported) {
     if (!json) return printer();
-    said = OrderedJson::array();
-    return [&said](const Diagnostic& d) {
-        if (d.severity >= Severity::Warning) said.push_back(diagnosticJson(d));
+    reported = OrderedJson::array();
+    return [&reported](const Diagnostic& d) {
+        if (d.severity >= Severity::Warning) reported.push_back(diagnosticJson(d));
     };
 }
 
-void printReport(OrderedJson found, OrderedJson said) {
-    found["diagnostics"] = std::move(said);
+void printReport(OrderedJson found, OrderedJson reported) {
+    found["diagnostics"] = std::move(reported);
     std::printf("%s\n", found.dump(2, ' ', false, OrderedJson::error_handler_t::replace).c_str());
 }
 

@@ -8,10 +8,10 @@ namespace alpenglow::cli {
 /// A message as JSON; lines and columns count from 1, columns and lengths in bytes.
 nlohmann::ordered_json diagnosticJson(const Diagnostic&);
 
-/// With `json` a handler that adds warnings and errors to `said`, which outlives it; else printer().
-Diagnostics::Handler printerOr(bool json, nlohmann::ordered_json& said);
+/// With `json` a handler that adds warnings and errors to `reported`, which outlives it; else printer().
+Diagnostics::Handler printerOr(bool json, nlohmann::ordered_json& reported);
 
-/// Prints the object to standard output, with `said` as its "diagnostics".
-void printReport(nlohmann::ordered_json found, nlohmann::ordered_json said);
+/// Prints the object to standard output, with `reported` as its "diagnostics".
+void printReport(nlohmann::ordered_json found, nlohmann::ordered_json reported);
 
 } // namespace alpenglow::cli

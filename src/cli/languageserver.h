@@ -7,9 +7,10 @@
 
 namespace alpenglow::cli {
 
+/// The language server: answers the messages of one editor, one after the other.
 class LanguageServer {
 public:
-    using Json = nlohmann::json;
+    using Json = nlohmann::json; ///< a message, or a part of one
     /// Folders for #include in addition to that of the shader, and macros.
     explicit LanguageServer(rsl::FrontOptions options) : options_(std::move(options)) {}
 
@@ -85,7 +86,7 @@ private:
 
 /// A request that cannot be fulfilled, with the reason, which the editor shows.
 struct Refused {
-    std::string why;
+    std::string why; ///< for people
 };
 
 /// Kinds and modifiers of semantic tokens, in the order of their numbers.
@@ -100,6 +101,7 @@ std::string formatted(const std::string& text, size_t tab, bool spaces);
 
 /// "file:///a%20b.sl" to "/a b.sl"; other schemes give "".
 std::string pathOf(const std::string& uri);
+/// The reverse.
 std::string uriOf(const std::string& path);
 
 } // namespace alpenglow::cli

@@ -243,24 +243,24 @@ bool Document::isHere(const rsl::Place& p) const { return origin(p).file == path
 
 template <class F> void Document::eachUse(F&& f) const {
     if (!program_) return;
-    const auto tell = [&](const rsl::Place& p, const std::string& name, const Use& use) {
+    const auto note = [&](const rsl::Place& p, const std::string& name, const Use& use) {
         if (isHere(p)) f(p.line, p.column, name, use);
     };
     const auto symbol = [&](const rsl::Symbol* s) {
         Use use;
         use.symbol = s;
-        tell(s->place, s->name, use);
+        note(s->place, s->name, use);
     };
     const auto expression = [&](const rsl::Expr& e) {
         Use use;
         if (e.kind == rsl::ExprKind::Variable && e.symbol) {
             use.symbol = e.symbol;
-            tell(e.place, e.symbol->name, use);
+            note(e.place, e.symbol->name, use);
         }
         if (e.kind != rsl::ExprKind::ShadeopCall && e.kind != rsl::ExprKind::FunctionCall) return;
         if (e.function && !e.shadeop) use.function = e.function;
         if (e.shadeop) use.shadeop = e.shadeop, use.signature = e.signature;
-        tell(e.place, e.text, use);
+        note(e.place, e.text, use);
     };
     const auto statement = [&](const rsl::Stmt& s) {
         for (const auto& d : s.declarators)
@@ -269,7 +269,7 @@ template <class F> void Document::eachUse(F&& f) const {
     for (const auto& s : program_->shaders) {
         Use use;
         use.shader = s.get();
-        tell(s->place, s->name, use);
+        note(s->place, s->name, use);
         for (const auto& p : s->parameters) {
             symbol(p.symbol);
             if (p.defaultValue) rsl::front::everyExpr(*p.defaultValue, expression);
@@ -279,7 +279,7 @@ template <class F> void Document::eachUse(F&& f) const {
     rsl::front::everyFunction(*program_, [&](const rsl::Function& g) {
         Use use;
         use.function = &g;
-        tell(g.place, g.name, use);
+        note(g.place, g.name, use);
         for (const rsl::Symbol* p : g.parameters) symbol(p);
         if (g.body && isHere(g.body->place)) rsl::front::everyStmt(*g.body, statement, expression);
     });

@@ -29,6 +29,7 @@ struct CallAround {
     size_t argument = 0; ///< from 0
 };
 
+/// One file that an editor has open. Positions are bytes from 0.
 class Document {
 public:
     /// A shader; a scene when `rib` is set, or by the end of its name (".rib").
@@ -36,28 +37,36 @@ public:
         : path_(std::move(path)), rib_(rib || path_.ends_with(".rib") || path_.ends_with(".RIB")) {
         set(std::move(text));
     }
+    /// It is a scene.
     bool rib() const { return rib_; }
 
+    /// As the editor names it.
     const std::string& path() const { return path_; }
+    /// As the editor has it.
     const std::string& text() const { return text_; }
+    /// Replaces the whole text.
     void set(std::string text);
     /// Replaces the bytes [begin, end).
     void replace(size_t begin, size_t end, const std::string& by);
     /// Compiles the text as far as it can be understood, if it changed since the last time.
     void analyse(const rsl::FrontOptions&);
+    /// The text has changed since it was compiled.
     bool stale() const { return stale_; }
     /// Something that it includes is another now.
     void touch() { stale_ = true; }
     /// Whether it includes this file, or names it.
     bool includes(const std::string& path) const;
+    /// Of the last compilation, and its checked program; null: it has none.
     const std::vector<Diagnostic>& diagnostics() const { return diagnostics_; }
     const rsl::Program* program() const { return program_.get(); }
 
+    /// Number of lines, at least 1.
     size_t lines() const { return starts_.size(); }
     /// The text of a line (from 0) without its end; "" beyond the last.
     std::string_view line(size_t) const;
     /// Position of a line's byte; clamped to the line and the text.
     size_t offset(size_t line, size_t column) const;
+    /// The line of a position, and where a line begins.
     size_t lineOf(size_t position) const;
     size_t startOf(size_t line) const { return line < starts_.size() ? starts_[line] : text_.size(); }
 
@@ -65,6 +74,7 @@ public:
     std::optional<std::pair<size_t, size_t>> wordAt(size_t position) const;
     /// Inside a comment or a string?
     enum class Where { Code, Comment, String };
+    /// Where a position is; the innermost call around it; nothing outside of calls.
     Where where(size_t position) const;
     std::optional<CallAround> callAround(size_t position) const;
     /// End of the definition whose name is here: after the '}' that closes its body.
@@ -74,20 +84,23 @@ public:
 
     /// What is used or declared by the word that begins at this position.
     struct Use {
+        /// At most one is set; null: it is none of these.
         const rsl::Symbol* symbol = nullptr;
         const rsl::Function* function = nullptr;
         const rsl::Shader* shader = nullptr;
         const shadeops::Shadeop* shadeop = nullptr;
         const shadeops::Signature* signature = nullptr;
     };
+    /// For a word of the text; empty: nothing is known of it.
     Use useAt(size_t word) const;
     /// All of them, by the positions of their words.
     std::map<size_t, Use> uses() const;
     /// A name or keyword of the text outside of comments and strings.
     struct Word {
-        size_t begin, end;
-        bool directive; ///< in a line that the preprocessor reads
+        size_t begin, end; ///< in bytes: first, and behind the last
+        bool directive;    ///< in a line that the preprocessor reads
     };
+    /// All of them, in order.
     std::vector<Word> words() const;
     /// The line and column, from 0, of the name in its "#define".
     std::optional<std::pair<size_t, size_t>> macro(const std::string& name) const;
@@ -96,15 +109,17 @@ public:
     /// The text in front of "->" or "." before a name: "this", "ray", "ray->start"; nothing where there is neither.
     struct Receiver {
         std::string name;
-        bool arrow = false;
+        bool arrow = false; ///< "->" stands there, else "."
     };
+    /// Of the name that begins there.
     std::optional<Receiver> receiver(size_t word) const;
     /// One thing that a receiver has.
     struct Member {
         std::string name, detail, of; ///< `of`: the class or structure
-        rsl::Place place;
-        bool method = false;
+        rsl::Place place;             ///< of its declaration
+        bool method = false;          ///< it is called
     };
+    /// In the scope of the position.
     std::vector<Member> members(const Receiver&, size_t position) const;
     /// The structure of this name; null when there is none.
     const rsl::StructType* structure(const std::string& name) const;
@@ -115,6 +130,7 @@ public:
         const rsl::Shader* shader = nullptr;
         const rsl::Function* function = nullptr;
     };
+    /// The innermost ones.
     Around around(size_t position) const;
     /// All functions, also nested ones, that the compiler knows by this name; each definition once.
     std::vector<const rsl::Function*> functions(const std::string& name) const;
@@ -123,6 +139,7 @@ public:
 
     /// A place of the program; the file is empty for text that is in no file.
     Origin origin(const rsl::Place&) const;
+    /// Whether the place is in this document.
     bool isHere(const rsl::Place&) const;
 
 private:

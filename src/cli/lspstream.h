@@ -9,13 +9,15 @@ namespace alpenglow::cli {
 /// Splits a stream of bytes into messages. Feed bytes, then call next() until it returns More.
 class MessageStream {
 public:
+    /// What next() found.
     enum class Kind {
-        More, ///< nothing whole is there yet
-        Message,
+        More,      ///< nothing whole is there yet
+        Message,   ///< one message
         BadLength, ///< a Content-Length that is no number
         NoLength,  ///< headers without one
         TooLong    ///< longer than limits::kServerMessage: it is skipped
     };
+    /// Appends bytes of the stream.
     void feed(const char* bytes, size_t count) { buffer_.append(bytes, count); }
     /// The next message or fault; `body` is set for a message.
     Kind next(std::string& body);

@@ -9,8 +9,9 @@ std::string manPage(const ProgramText&, const std::string& command);
 
 /// An environment variable that the program reads, and what it is for.
 struct VariableText {
-    const char *name, *help;
+    const char *name, *help; ///< its name; a sentence
 };
+/// All of them, in the order of the manual.
 const std::vector<VariableText>& environmentVariables();
 
 } // namespace alpenglow::cli

@@ -12,6 +12,7 @@ std::string contextText(uint32_t contexts);
 
 /// The descriptor as text, as `alpenglow info --shadeops NAME` prints it.
 std::string manualText(const shadeops::Shadeop&);
+/// The same for programs.
 nlohmann::ordered_json manualJson(const shadeops::Shadeop&);
 /// Without a heading. `first` (may be null) is the signature to be shown before the others.
 std::string manualMarkdown(const shadeops::Shadeop&, const shadeops::Signature* first = nullptr);

@@ -45,8 +45,8 @@ void addMerge(CLI::App& app, int* status) {
             if (!a->settings.expect)
                 throw CLI::ValidationError("--expect", "takes A:B with A < B: samples A to B-1, for example 0:64");
         }
-        nlohmann::ordered_json said;
-        Diagnostics diags(printerOr(a->json, said));
+        nlohmann::ordered_json reported;
+        Diagnostics diags(printerOr(a->json, reported));
         a->settings.shaderPaths = folders(a->searchPaths);
         switch (render::mergePictures(a->parts, a->output, a->settings, diags)) {
         case render::MergeResult::Done:
@@ -59,7 +59,7 @@ void addMerge(CLI::App& app, int* status) {
             *status = kOutputFailed;
             break;
         }
-        if (a->json) printReport({{"merged", *status == kDone || *status == kDoneWithErrors}}, std::move(said));
+        if (a->json) printReport({{"merged", *status == kDone || *status == kDoneWithErrors}}, std::move(reported));
     });
 }
 

@@ -167,7 +167,7 @@ void takeFlag(const OldFlag& f, const std::string& inlineValue, const std::vecto
             .push_back(fmt::format("{} of {} has no effect: {}", f.name, f.renderers, f.here));
         return;
     }
-    std::string said = written + " is";
+    std::string reported = written + " is";
     std::string_view rest = f.here;
     while (!rest.empty()) { // words of the template, each an argument
         const size_t space = std::min(rest.find(' '), rest.size());
@@ -175,10 +175,10 @@ void takeFlag(const OldFlag& f, const std::string& inlineValue, const std::vecto
         rest.remove_prefix(std::min(space + 1, rest.size()));
         for (size_t k = 0; k < values.size(); ++k)
             if (const size_t at = word.find("$" + std::to_string(k + 1)); at != word.npos) word.replace(at, 2, values[k]);
-        said += " " + word;
+        reported += " " + word;
         out->arguments.push_back(std::move(word));
     }
-    out->notes.push_back(said + " here");
+    out->notes.push_back(reported + " here");
 }
 
 } // namespace

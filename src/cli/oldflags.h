@@ -9,6 +9,7 @@ namespace alpenglow::cli {
 
 /// One flag of another renderer's command line.
 struct OldFlag {
+    /// What becomes of a flag.
     enum class Use {
         Accepted, ///< becomes `here`
         Dropped,  ///< ignored because it is not needed; `here` has the reason
@@ -18,8 +19,8 @@ struct OldFlag {
     std::string_view name;      ///< "-res"
     int values = 0;             ///< how many follow; a first one may also follow ':' or '=' ("-t:4", "-frames=1-3")
     std::string_view renderers; ///< "prman, renderdl"
-    Use use = Use::Dropped;
-    std::string_view here; ///< "--format $1x$2", or text for people
+    Use use = Use::Dropped;     ///< what becomes of it
+    std::string_view here;      ///< "--format $1x$2", or text for people
 };
 
 /// The flags of `render`.
@@ -27,7 +28,7 @@ std::span<const OldFlag> oldFlags();
 
 /// A command line with the flags of other renderers replaced.
 struct TranslatedFlags {
-    std::vector<std::string> arguments;
+    std::vector<std::string> arguments;         ///< without the program's name
     std::vector<std::string> notes;             ///< what was replaced or ignored, a line each
     std::vector<std::string> withoutEquivalent; ///< those that have no effect, a line each
     std::string error;                          ///< not "": a flag that cannot be taken, and what to write instead

@@ -15,6 +15,7 @@ struct OldName {
     std::string_view instead; ///< of what is not done: what to use here; else a note, or ""
 };
 
+/// All of them, in the order of the manual.
 std::span<const OldName> oldNames();
 
 /// The entry of a program's own name, "/opt/bin/txmake" or "txmake.exe". Null: it is none of them.

@@ -13,6 +13,7 @@ enum class Topic { Options, Attributes, Hiders, Displays, Requests, Messages };
 /// Everything of a topic, a line each. `name` (may be ""): one entry in full, or those of one category ("trace",
 /// "trace:maxdepth", "maxdepth"); "" as the result when there is none of that name.
 std::string topicText(Topic, const std::string& name);
+/// The same for programs; null when there is none of that name.
 nlohmann::ordered_json topicJson(Topic, const std::string& name);
 /// The whole page that holds the topic.
 std::string topicPage(Topic);

@@ -318,10 +318,10 @@ void addProbe(CLI::App& app, int* status) {
               "Example: alpenglow probe examples/muttenzer_box.rib 0,-1.25,0 0,1,0 --spp 65536");
     c->add_flag("--json", a->json, "Print JSON, with messages under \"diagnostics\"");
     c->callback([a, status] {
-        nlohmann::ordered_json said, found = nlohmann::ordered_json::object();
-        Diagnostics diags(printerOr(a->json, said));
+        nlohmann::ordered_json reported, found = nlohmann::ordered_json::object();
+        Diagnostics diags(printerOr(a->json, reported));
         *status = probe(*a, diags, found);
-        if (a->json) printReport(std::move(found), std::move(said));
+        if (a->json) printReport(std::move(found), std::move(reported));
     });
 }
 

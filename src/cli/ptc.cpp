@@ -122,7 +122,7 @@ std::string bounced(pointcloud::PointCloud& cloud, const PtcArguments& a) {
 }
 
 /// What is in files, as `info` shows it.
-int tell(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
+int describe(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
     bool all = true;
     found["files"] = nlohmann::ordered_json::array();
     for (const std::string& f : a.files) {
@@ -136,12 +136,12 @@ int tell(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
 
 /// 0: done; else why not. found: what --json prints.
 int runPtc(const PtcArguments& a, Diagnostics& d, nlohmann::ordered_json& found) {
-    if (a.action == "info") return tell(a, d, found);
+    if (a.action == "info") return describe(a, d, found);
     if (a.action == "brick") {
         if (pointcloud::brickMapOfFiles(std::span(a.files).first(a.files.size() - 1), a.files.back(), kAnywhere, d)) return kDone;
         const auto unwritten = [](const Diagnostic& m) { return m.code == Rie::System || m.code == Rie::DiskFull; };
-        const std::vector<Diagnostic> said = d.all();
-        return std::any_of(said.begin(), said.end(), unwritten) ? kOutputFailed : kNothingRendered;
+        const std::vector<Diagnostic> reported = d.all();
+        return std::any_of(reported.begin(), reported.end(), unwritten) ? kOutputFailed : kNothingRendered;
     }
     std::vector<pointcloud::PointCloud> from;
     for (size_t i = 0; i + 1 < a.files.size(); ++i) {
@@ -213,8 +213,8 @@ void addPtc(CLI::App& app, int* status) {
     c->add_flag("--json", a->json, "As JSON: what info shows under \"files\", messages under \"diagnostics\"");
     c->footer("alpenglow ptc brick room.ptc room.bkm. docs/pointclouds.md describes the files.");
     c->callback([a, status] {
-        nlohmann::ordered_json said, found = nlohmann::ordered_json::object();
-        Diagnostics diags(printerOr(a->json, said));
+        nlohmann::ordered_json reported, found = nlohmann::ordered_json::object();
+        Diagnostics diags(printerOr(a->json, reported));
         const size_t least = a->action == "info" ? 1 : 2;
         const bool several = a->action == "merge" || a->action == "brick";
         if (a->files.size() < least || (least == 2 && !several && a->files.size() != 2))
@@ -229,7 +229,7 @@ void addPtc(CLI::App& app, int* status) {
         }
         *status = runPtc(*a, diags, found);
         if (*status == kDone && diags.errors()) *status = kDoneWithErrors;
-        if (a->json) printReport(std::move(found), std::move(said));
+        if (a->json) printReport(std::move(found), std::move(reported));
     });
 }
 

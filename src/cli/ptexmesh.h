@@ -6,9 +6,9 @@ namespace alpenglow::cli {
 
 /// How a Ptex file is written.
 struct PtexOptions {
-    int log = 3; ///< logarithm of the pixels along a side of a face
-    ptex::Number number = ptex::Number::Half;
-    bool allowWrite = true;
+    int log = 3;                              ///< logarithm of the pixels along a side of a face
+    ptex::Number number = ptex::Number::Half; ///< how values are stored
+    bool allowWrite = true;                   ///< as OutputPolicy::allowWrite
 };
 
 /// Of a PLY file in text: vertices with x, y, z and, or faces with, red, green, blue (numbers of 0 to 1, bytes of 0 to 255);

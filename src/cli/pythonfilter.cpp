@@ -121,9 +121,9 @@ bool valueOf(const Json& j, ri::Value& v) {
 
 class PythonFilter final : public ri::RequestReceiver {
 public:
-    PythonFilter(std::string name, std::unique_ptr<ri::Program> program, ri::RequestReceiver& to, Diagnostics& said,
+    PythonFilter(std::string name, std::unique_ptr<ri::Program> program, ri::RequestReceiver& to, Diagnostics& reported,
                  const StopFlag* stop)
-        : name_(std::move(name)), program_(std::move(program)), to_(to), said_(said), reporter_(said), stop_(stop) {}
+        : name_(std::move(name)), program_(std::move(program)), to_(to), reported_(reported), reporter_(reported), stop_(stop) {}
 
     void request(const ri::Call& c) override {
         if (!program_) return to_.request(c);
@@ -145,12 +145,12 @@ public:
 
 private:
     void error(const SourcePlace& at, const std::string& what, const std::string& hint) {
-        said_.report(Severity::Error, Rie::System, at, fmt::format("filter \"{}\": {}", name_, what), hint);
+        reported_.report(Severity::Error, Rie::System, at, fmt::format("filter \"{}\": {}", name_, what), hint);
     }
     /// Passes on a request that the function gave: [name, args, params], or RIB.
     void replace(const Json& r, const SourcePlace& at) {
         if (r.is_string()) {
-            for (const ri::Call& c : ri::requestsOf(r.get<std::string>(), name_, said_)) to_.request(c);
+            for (const ri::Call& c : ri::requestsOf(r.get<std::string>(), name_, reported_)) to_.request(c);
             return;
         }
         ri::Call c;
@@ -175,7 +175,7 @@ private:
     std::string name_;
     std::unique_ptr<ri::Program> program_;
     ri::RequestReceiver& to_;
-    Diagnostics& said_;
+    Diagnostics& reported_;
     ri::Reporter reporter_;
     const StopFlag* stop_;
 };
@@ -183,7 +183,7 @@ private:
 } // namespace
 
 std::unique_ptr<ri::RequestReceiver> pythonFilter(const std::string& spec, const std::vector<std::string>& arguments,
-                                                  ri::RequestReceiver& to, Diagnostics& said, const StopFlag* stop,
+                                                  ri::RequestReceiver& to, Diagnostics& reported, const StopFlag* stop,
                                                   std::string& why) {
     const std::string python = pythonFile();
     if (python.empty()) {
@@ -196,7 +196,7 @@ std::unique_ptr<ri::RequestReceiver> pythonFilter(const std::string& spec, const
     std::string text;
     if (!program || !program->ask("{}\n", kSeconds, stop, text, why)) return nullptr;
     const Json a = Json::parse(text, nullptr, false);
-    if (a.is_object() && a.contains("keep")) return std::make_unique<PythonFilter>(spec, std::move(program), to, said, stop);
+    if (a.is_object() && a.contains("keep")) return std::make_unique<PythonFilter>(spec, std::move(program), to, reported, stop);
     why = a.is_object() && a.contains("error") ? a["error"].get<std::string>() : "its answer cannot be read";
     return nullptr;
 }

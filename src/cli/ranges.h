@@ -26,6 +26,7 @@ template <class Good> CLI::Validator numberCheck(Good good, const std::string& w
         "");
 }
 
+/// Accepts numbers from `least` to `most`; the second one whole numbers only.
 inline CLI::Validator between(double least, double most) {
     return numberCheck([=](double n) { return n >= least && n <= most; }, fmt::format("a number from {} to {}", least, most));
 }
@@ -37,6 +38,7 @@ inline CLI::Validator wholeBetween(double least, double most) {
 inline CLI::Validator positive(const std::string& example = "") {
     return numberCheck([](double n) { return n > 0; }, "a number above 0" + (example.empty() ? "" : ", for example " + example));
 }
+/// Accepts numbers from 0 on.
 inline CLI::Validator notNegative() {
     return numberCheck([](double n) { return n >= 0; }, "a number that is 0 or more");
 }

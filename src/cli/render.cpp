@@ -189,7 +189,7 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
         });
     render::Progress progress(settings.pixel ? render::ProgressMode::None : settings.progress);
     FramesAtOnce atOnce(a.framesAtOnce, settings, diags);
-    render::Renderer renderer(settings, render::transportEngine(), atOnce.said(), progress,
+    render::Renderer renderer(settings, render::transportEngine(), atOnce.reported(), progress,
                               [](const std::string& line) { std::printf("%s\n", line.c_str()); });
     if (atOnce.processes()) renderer.setProcesses(*atOnce.processes());
     ri::ReaderOptions options = readerOptions(a, settings);
@@ -198,31 +198,31 @@ int renderOnce(const RenderArguments& a, const StopFlag* stop) {
     options.overrides = [&](scene::Options& o) { renderer.override(o); };
     bool memory = false;
     SceneFilters filters;
-    if (!filters.load(a.filters, atOnce.said(), stop)) return kWrongUse;
+    if (!filters.load(a.filters, atOnce.reported(), stop)) return kWrongUse;
     options.filter = filters.function();
     if (!renderer.canBegin()) return kOutputFailed;
     try {
-        ri::RibReader reader(options, renderer, atOnce.said());
+        ri::RibReader reader(options, renderer, atOnce.reported());
         atOnce.setReader(reader);
         renderer.setProcedurals([&reader](const scene::Frame& f, std::span<const int> which) { return reader.make(f, which); });
-        readDefaults(a, reader, atOnce.said());
+        readDefaults(a, reader, atOnce.reported());
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         filters.begin();
         readScenes(a.scenes, settings, options, reader, renderer,
-                   [&](const std::string& file) { return modelFolder.scene(file, a.modelTime, atOnce.said()); });
+                   [&](const std::string& file) { return modelFolder.scene(file, a.modelTime, atOnce.reported()); });
     } catch (const std::bad_alloc&) {
         memory = true;
-        atOnce.said().report(Severity::Severe, Rie::NoMem, {}, "out of memory while the scene was read",
-                             "the limit is " + memorySizeText(settings.memoryLimit) + "; --memory-limit sets another");
+        atOnce.reported().report(Severity::Severe, Rie::NoMem, {}, "out of memory while the scene was read",
+                                 "the limit is " + memorySizeText(settings.memoryLimit) + "; --memory-limit sets another");
     }
-    renderer.settle();
-    atOnce.said().ignore(false); // what follows is the program's, not the scene's
+    renderer.waitForFrames();
+    atOnce.reported().ignore(false); // what follows is the program's, not the scene's
     if (const int n = diags.ignored(); n > 0) {
-        Diagnostic said{Severity::Info, Rie::NoError, {}, {}, {}, {}};
-        said.message = "ErrorHandler \"ignore\": " + std::to_string(n) +
-                       (n == 1 ? " error or warning was" : " errors and warnings were") + " not printed; -v prints all";
-        said.always = true;
-        diags.report(std::move(said));
+        Diagnostic reported{Severity::Info, Rie::NoError, {}, {}, {}, {}};
+        reported.message = "ErrorHandler \"ignore\": " + std::to_string(n) +
+                           (n == 1 ? " error or warning was" : " errors and warnings were") + " not printed; -v prints all";
+        reported.always = true;
+        diags.report(std::move(reported));
     }
     const auto& outcome = renderer.outcome();
     bool interrupted = outcome.interrupted || *stop;

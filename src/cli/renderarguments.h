@@ -14,15 +14,18 @@ namespace alpenglow::cli {
 /// Options as they are given, and the settings that checkRenderArguments() makes of them.
 struct RenderArguments {
     render::RenderSettings settings;
+    /// Texts of the options of these names.
     std::vector<std::string> scenes, searchPaths, displays, rib, filters;
     std::vector<std::string> lastArchivePaths, lastProceduralPaths; ///< of the environment, after all others
+    /// Texts of the options of these names.
     std::string format, crop, samples, part, frames, pixel, preset, memory, folder, seed, progress = "auto";
     std::string gamma, preview;
     std::vector<std::pair<std::string, int>> tev; ///< hosts and ports
+    /// Flags of these names.
     bool noDirect = false, noIndirect = false, watch = false, quiet = false, verbose = false, noRc = false;
-    std::vector<int> frameList;
-    double modelTime = 0; ///< seconds of the animation of a model
-    int framesAtOnce = 1; ///< 1 to limits::kFramesAtOnce
+    std::vector<int> frameList; ///< of --frames, ascending
+    double modelTime = 0;       ///< seconds of the animation of a model
+    int framesAtOnce = 1;       ///< 1 to limits::kFramesAtOnce
 };
 
 /// Describes the options to the parser, which writes them to the arguments; these outlive it.

@@ -71,10 +71,10 @@ ri::RequestPattern patternOf(const std::string& option, const std::string& text)
 /// Requests on the command line. Throws CLI::ValidationError.
 std::vector<ri::Call> callsOf(const std::string& option, const std::string& text) {
     std::string fault;
-    Diagnostics said([&](const Diagnostic& d) {
+    Diagnostics reported([&](const Diagnostic& d) {
         if (fault.empty()) fault = d.message;
     });
-    std::vector<ri::Call> calls = ri::requestsOf(text, option, said);
+    std::vector<ri::Call> calls = ri::requestsOf(text, option, reported);
     if (!fault.empty()) throw CLI::ValidationError(option, "\"" + text + "\": " + fault);
     return calls;
 }
@@ -255,8 +255,8 @@ void addRib(CLI::App& app, int* status) {
     c->footer("A PATTERN is a regular expression that begins where a request does, as it stands in text, and ends with one of\n"
               "its words. docs/rib-tool.md has examples.");
     c->callback([a, status] {
-        nlohmann::ordered_json said, found = nlohmann::ordered_json::object();
-        Diagnostics diags(a->json ? printerOr(true, said)
+        nlohmann::ordered_json reported, found = nlohmann::ordered_json::object();
+        Diagnostics diags(a->json ? printerOr(true, reported)
                                   : printer(a->quiet     ? Severity::Error
                                             : a->verbose ? Severity::Info
                                                          : Severity::Warning));
@@ -267,7 +267,7 @@ void addRib(CLI::App& app, int* status) {
         if (terminal && (a->binary || a->gzip)) throw CLI::ValidationError("-o", "is needed: a terminal takes text only");
         if (a->json && a->writes() && a->output == "-") throw CLI::ValidationError("--json", "needs standard output for itself");
         *status = runRib(*a, rulesOf(*a), diags, found);
-        if (a->json) printReport(std::move(found), std::move(said));
+        if (a->json) printReport(std::move(found), std::move(reported));
     });
 }
 

@@ -20,8 +20,8 @@ std::string libraryFile(const std::string& name) {
 
 } // namespace
 
-std::unique_ptr<RibFilters> RibFilters::make(const std::vector<std::string>& specs, ri::RequestReceiver& to, Diagnostics& said,
-                                             const StopFlag* stop) {
+std::unique_ptr<RibFilters> RibFilters::make(const std::vector<std::string>& specs, ri::RequestReceiver& to,
+                                             Diagnostics& reported, const StopFlag* stop) {
     std::unique_ptr<RibFilters> all(new RibFilters(to));
     for (size_t i = specs.size(); i-- > 0;) {
         std::vector<std::string> words = ri::commandWords(specs[i]);
@@ -30,12 +30,12 @@ std::unique_ptr<RibFilters> RibFilters::make(const std::vector<std::string>& spe
         const bool python = name.starts_with("python:") || name.ends_with(".py") || name.find(".py:") != name.npos;
         std::string why = "it has no name";
         std::unique_ptr<ri::RequestReceiver> stage;
-        if (python) stage = pythonFilter(name, words, all->first(), said, stop, why);
-        else if (!name.empty()) stage = ri::loadRif(libraryFile(name), words, all->first(), said, why);
+        if (python) stage = pythonFilter(name, words, all->first(), reported, stop, why);
+        else if (!name.empty()) stage = ri::loadRif(libraryFile(name), words, all->first(), reported, why);
         if (!stage) {
-            said.report(Severity::Error, Rie::System, {}, fmt::format("filter \"{}\": {}", specs[i], why),
-                        "a library that defines RifPluginManufacture (include/RifPlugin.h), FILE.py, FILE.py:FUNCTION or "
-                        "python:MODULE.FUNCTION");
+            reported.report(Severity::Error, Rie::System, {}, fmt::format("filter \"{}\": {}", specs[i], why),
+                            "a library that defines RifPluginManufacture (include/RifPlugin.h), FILE.py, FILE.py:FUNCTION or "
+                            "python:MODULE.FUNCTION");
             return nullptr;
         }
         all->stages_.push_back(std::move(stage));

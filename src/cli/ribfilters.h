@@ -12,8 +12,8 @@ namespace alpenglow::cli {
 class RibFilters {
 public:
     /// specs: "lib.so ARGUMENT..", "file.py", "file.py:function" or "python:module.function"; blanks separate words, quotes join
-    /// them. Null after a report where one cannot be used. `to`, `said` and `stop` (may be null) must outlive it.
-    static std::unique_ptr<RibFilters> make(const std::vector<std::string>& specs, ri::RequestReceiver& to, Diagnostics& said,
+    /// them. Null after a report where one cannot be used. `to`, `reported` and `stop` (may be null) must outlive it.
+    static std::unique_ptr<RibFilters> make(const std::vector<std::string>& specs, ri::RequestReceiver& to, Diagnostics& reported,
                                             const StopFlag* stop);
     /// The receiver of the requests that are filtered.
     ri::RequestReceiver& first() { return stages_.empty() ? to_ : *stages_.back(); }
@@ -26,7 +26,7 @@ private:
 
 /// A function in Python, in a separate process; see RibFilters::make for `spec`. Null with a reason where there is none.
 std::unique_ptr<ri::RequestReceiver> pythonFilter(const std::string& spec, const std::vector<std::string>& arguments,
-                                                  ri::RequestReceiver& to, Diagnostics& said, const StopFlag* stop,
+                                                  ri::RequestReceiver& to, Diagnostics& reported, const StopFlag* stop,
                                                   std::string& why);
 
 } // namespace alpenglow::cli

@@ -99,12 +99,12 @@ int runView(const ViewArguments& a) {
     o.reader.allowRead = a.settings.allowRead;
     ModelFolder folder; // of the maps of a model
     if (const std::string& f = folder.pathFor({a.scene}); !f.empty()) o.settings.texturePaths.push_back(f);
-    Diagnostics said(print);
-    o.read = [&a, &folder, &said](ri::RibReader& reader) {
+    Diagnostics reported(print);
+    o.read = [&a, &folder, &reported](ri::RibReader& reader) {
         for (const std::string& r : a.rib) reader.readMemory(r, "--rib");
         reader.nextScene();
         if (models::namedAsForeignModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0) {
-            if (const std::string text = folder.scene(a.scene, 0, said); !text.empty()) reader.readMemory(text, a.scene);
+            if (const std::string text = folder.scene(a.scene, 0, reported); !text.empty()) reader.readMemory(text, a.scene);
         } else if (ri::namedAsModel(a.scene) && ::access(a.scene.c_str(), R_OK) == 0)
             reader.readMemory(modelScene(a.scene), a.scene);
         else reader.readFile(a.scene);

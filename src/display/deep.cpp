@@ -5,10 +5,10 @@
 
 namespace alpenglow::display {
 
-void DeepSamples::leftAt(size_t pixel, double z, double out[3]) const {
+void DeepSamples::transmittanceAt(size_t pixel, double z, double out[3]) const {
     const auto begin = steps.begin() + long(first[pixel]), end = steps.begin() + long(first[pixel + 1]);
     const auto at = std::lower_bound(begin, end, z, [](const DeepStep& s, double depth) { return double(s.z) < depth; });
-    for (int k = 0; k < 3; ++k) out[k] = at == begin ? 1 : double(std::prev(at)->left[k]);
+    for (int k = 0; k < 3; ++k) out[k] = at == begin ? 1 : double(std::prev(at)->transmittance[k]);
 }
 
 void meanStairs(std::vector<DeepChange>& all, size_t count, float tolerance, std::vector<DeepStep>& out) {
@@ -22,11 +22,11 @@ void meanStairs(std::vector<DeepChange>& all, size_t count, float tolerance, std
         for (j = i; j < all.size() && all[j].z == all[i].z; ++j)
             for (int k = 0; k < 3; ++k) sum[k] += double(all[j].after[k]) - double(all[j].before[k]);
         DeepStep s{all[i].z, {}};
-        for (int k = 0; k < 3; ++k) s.left[k] = float(std::clamp(sum[k] / double(count), 0.0, 1.0));
+        for (int k = 0; k < 3; ++k) s.transmittance[k] = float(std::clamp(sum[k] / double(count), 0.0, 1.0));
         // A step closer than the tolerance to the previous one is merged with the next.
         const DeepStep before = out.size() > begin ? out.back() : DeepStep{};
         float most = 0;
-        for (int k = 0; k < 3; ++k) most = std::max(most, std::fabs(s.left[k] - before.left[k]));
+        for (int k = 0; k < 3; ++k) most = std::max(most, std::fabs(s.transmittance[k] - before.transmittance[k]));
         if (j == all.size() || most > tolerance) out.push_back(s);
     }
 }

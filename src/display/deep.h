@@ -1,5 +1,4 @@
-// Deep shadow maps in memory: for each pixel how much light from the eye is left at each depth (Lokovic, Veach: Deep Shadow
-// Maps, 2000).
+// Deep shadow maps in memory: transmittance over depth for each pixel (Lokovic, Veach: Deep Shadow Maps, 2000).
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -7,10 +6,10 @@
 
 namespace alpenglow::display {
 
-/// Light that is left behind a depth (camera-space z), channel by channel, 0 to 1.
+/// Transmittance behind a depth (camera-space z), by channel, 0 to 1.
 struct DeepStep {
     float z = 0;
-    float left[3] = {1, 1, 1};
+    float transmittance[3] = {1, 1, 1}; ///< red, green, blue
 };
 
 /// Transmittance over depth as a staircase, pixel by pixel in rows from the top: 1 before the first step, constant after the
@@ -19,13 +18,13 @@ struct DeepSamples {
     std::vector<uint64_t> first; ///< of each pixel, and behind the last one the number of all steps
     std::vector<DeepStep> steps; ///< of a pixel by increasing z
     /// Transmittance at a depth, including surfaces nearer than it.
-    void leftAt(size_t pixel, double z, double out[3]) const;
+    void transmittanceAt(size_t pixel, double z, double out[3]) const;
 };
 
 /// A step of one staircase among several.
 struct DeepChange {
-    float z;
-    float before[3], after[3];
+    float z;                   ///< depth of the step, camera space
+    float before[3], after[3]; ///< transmittance by channel, in front of the step and behind it
 };
 /// Appends the mean of `count` staircases, given by all their steps in any order, as one staircase that deviates from it by at
 /// most `tolerance` (>= 0), and ends at its final value. Sorts `all`.

@@ -10,18 +10,18 @@ namespace alpenglow::display {
 /// Errors of a channel over all pixels, in the units of the pictures. Pixels where both are the same (also both NaN or the same
 /// infinity) differ by 0; where exactly one is not finite, they count in nonFinite and nowhere else.
 struct ChannelDiff {
-    std::string name;
-    double meanAbs = 0, rmse = 0, max = 0;
-    double meanA = 0, meanB = 0; ///< over pixels finite in both
-    int maxX = 0, maxY = 0;      ///< first pixel, in reading order, of the largest error
+    std::string name;                      ///< name of the channel
+    double meanAbs = 0, rmse = 0, max = 0; ///< absolute errors, in the units of the pictures
+    double meanA = 0, meanB = 0;           ///< over pixels finite in both
+    int maxX = 0, maxY = 0;                ///< first pixel, in reading order, of the largest error
     size_t nonFinite = 0;
 };
 
 /// What a comparison found.
 struct DiffResult {
-    std::vector<ChannelDiff> channels;
-    ChannelDiff all;  ///< over every sample; its name is "all"
-    Image difference; ///< absolute difference per sample; infinity where it is counted in nonFinite
+    std::vector<ChannelDiff> channels; ///< in the order of the first picture
+    ChannelDiff all;                   ///< over every sample; its name is "all"
+    Image difference;                  ///< absolute difference per sample; infinity where it is counted in nonFinite
     /// Whether the largest error is at most `tolerance` and nonFinite is 0.
     bool within(double tolerance) const { return all.nonFinite == 0 && all.max <= tolerance; }
 };

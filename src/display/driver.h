@@ -16,17 +16,17 @@ struct DriverSetup {
     int width = 0, height = 0;         ///< of the delivered pixels (the crop window)
     int originX = 0, originY = 0;      ///< of its first pixel in the full picture
     int fullWidth = 0, fullHeight = 0; ///< of the full picture; 0 = the same
-    float pixelAspect = 1;
+    float pixelAspect = 1;             ///< width divided by height of a pixel
     std::vector<std::string> channels; ///< channelNames(parseMode(...))
     scene::ParamList params;           ///< of the Display request
     Quantization rgba, z;              ///< by quantizationOf; z is for the channel "z", rgba for all others
     bool quantizeAsked = false;        ///< false: rgba and z are RI's defaults, which drivers of float formats pass over
-    std::map<std::string, std::string> metadata;
-    std::optional<Matrix> worldToCamera, worldToNDC;
-    std::shared_ptr<const DeepSamples> deep; ///< for a deep shadow map (deepDriver); null: there is none, or no map
-    MattesRef mattes;                        ///< for a "cryptomatte" (cryptomatteDriver); null: there are none
-    OutputPolicy policy;
-    SourcePlace place; ///< of the Display request
+    std::map<std::string, std::string> metadata;     ///< texts for the header, by key
+    std::optional<Matrix> worldToCamera, worldToNDC; ///< for formats that store cameras; nothing: unknown
+    std::shared_ptr<const DeepSamples> deep;         ///< for a deep shadow map (deepDriver); null: there is none, or no map
+    MattesRef mattes;                                ///< for a "cryptomatte" (cryptomatteDriver); null: there are none
+    OutputPolicy policy;                             ///< where files may be written
+    SourcePlace place;                               ///< of the Display request
 };
 
 /// Receives one picture. Calls come from one thread, in the order open, rows..., close. The final file appears when close()
@@ -47,6 +47,7 @@ public:
 struct DriverDescriptor {
     std::vector<std::string> names; ///< display types it answers to, any case
     std::string doc;                ///< for the manual: what it writes, which parameters it reads
+    /// Constructs a driver.
     std::function<std::unique_ptr<Driver>()> make;
     bool writes = true;                ///< a file under the display's name
     std::optional<Format> format = {}; ///< that it writes whatever the name; nothing: another file, or by the name

@@ -14,11 +14,11 @@ namespace alpenglow::display {
 inline constexpr int kForeignName = 64;
 /// The header that the module writes before the numbers; the layout is part of its interface.
 struct ForeignPicture {
-    uint32_t stamp; ///< kForeignStamp
-    int32_t width, height, channels;
-    int32_t bits, floating;         ///< of a channel in the file
-    char colourSpace[kForeignName]; ///< "" if the file does not tell: "sRGB", "linear", or a gamma as text
-    uint32_t depth;                 ///< of grids: slices, each `height` rows, one below the other; pictures: 0
+    uint32_t stamp;                  ///< kForeignStamp
+    int32_t width, height, channels; ///< pixels; number of channels
+    int32_t bits, floating;          ///< of a channel in the file
+    char colourSpace[kForeignName];  ///< "" if the file does not tell: "sRGB", "linear", or a gamma as text
+    uint32_t depth;                  ///< of grids: slices, each `height` rows, one below the other; pictures: 0
 };
 /// Memory in bytes that a module may use in addition to the picture.
 inline constexpr uint64_t kForeignBytes = uint64_t(1) << 30;
@@ -34,12 +34,15 @@ inline bool sendForeign(int to, const void* bytes, size_t n) {
     return true;
 }
 
-/// The function of the module. Reads the file at `path` and writes it to the descriptor `to`; returns 0 on success, else writes
-/// an error to `why`, of `whySize` bytes. Rejects sizes beyond the limits before reading pixels.
+/// Limits of base/limits.h on what a module reads: pixels of a side, number of channels, decoded bytes, decoded bytes that are
+/// always allowed (smallBytes), and above these decoded bytes for each encoded byte (expansion).
 struct ForeignLimits {
     uint64_t side, channels, bytes, smallBytes, expansion;
 };
+/// The function of the module. Reads the file at `path` and writes it to the descriptor `to`; returns 0 on success, else writes
+/// an error to `why`, of `whySize` bytes. Rejects sizes beyond the limits before reading pixels.
 using ReadForeignPicture = int (*)(const char* path, int to, const ForeignLimits*, char* why, int whySize);
+/// The name under which the module exports it.
 inline constexpr const char* kReadForeignPicture = "alpenglow_read_picture";
 
 /// One of the two modules.

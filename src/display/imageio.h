@@ -47,15 +47,16 @@ std::optional<Image> readImage(const std::string& path, Diagnostics&, const Read
 /// The same from memory; `name` is for messages.
 std::optional<Image> decodeImage(std::span<const uint8_t> bytes, const std::string& name, Diagnostics&, const ReadOptions& = {});
 
+/// How a picture is written.
 struct WriteOptions {
-    Format format = Format::Exr;
+    Format format = Format::Exr; ///< file format
     /// A type that the format does not have (WrittenFormat) is converted to the nearest; drivers report that before.
     Sample sample = Sample::Float;
     bool quantised = false; ///< integer formats: data are codes (0..255) already; else [0,1] is scaled, rounded and clamped
     std::string compression = "zip"; ///< EXR: none rle zips zip piz; TIFF: none zip lzw packbits
     int tile = 0;                    ///< > 0: tiles of that side (EXR only); image.levels are then written as MIP-map levels
-    OutputPolicy policy;
-    SourcePlace place;
+    OutputPolicy policy;             ///< where files may be written
+    SourcePlace place;               ///< of the request, for messages
 };
 
 /// Writes a complete picture or nothing (base/file.h). Returns false after an error, which is reported.

@@ -12,9 +12,9 @@ namespace alpenglow::display {
 /// space). An AOV N has N.x N.y N.z, a colour c c.r c.g c.b, a float f f, others name.000 ... (docs/design/ri.md).
 struct ModeVariable {
     std::string name;
-    scene::Type type = scene::Type::Float;
-    int arrayLength = 0;   ///< 0 = not an array
-    bool declared = false; ///< false: the type is undeclared; treated as color, the shader's declaration decides
+    scene::Type type = scene::Type::Float; ///< how many numbers a value has, and their names
+    int arrayLength = 0;                   ///< 0 = not an array
+    bool declared = false;                 ///< false: the type is undeclared; treated as color, the shader's declaration decides
     std::vector<std::string> channels;
 };
 

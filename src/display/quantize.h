@@ -11,6 +11,7 @@ namespace alpenglow::display {
 /// With zero = 0 this is RiQuantize; the four-value form of a Display's "quantize" parameter has no dither.
 struct Quantization {
     float zero = 0, one = 0, min = 0, max = 0, dither = 0;
+    /// Not quantised: samples stay as they are.
     bool floating() const { return one == 0; }
     friend bool operator==(const Quantization&, const Quantization&) = default;
 };

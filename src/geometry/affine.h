@@ -10,6 +10,7 @@ struct Affine {
     Vec3d x{1, 0, 0}, y{0, 1, 0}, z{0, 0, 1}, o{0, 0, 0};
 
     Affine() = default;
+    /// a: without perspective; its last column is ignored.
     explicit Affine(const Matrix& a)
         : x(a.m[0][0], a.m[0][1], a.m[0][2]), y(a.m[1][0], a.m[1][1], a.m[1][2]), z(a.m[2][0], a.m[2][1], a.m[2][2]),
           o(a.m[3][0], a.m[3][1], a.m[3][2]) {}
@@ -19,6 +20,7 @@ struct Affine {
     Vec3d point(const Vec3d& p) const { return vector(p) + o; }
     /// v times the transpose of the 3x3 part. Of the inverse: a normal.
     Vec3d across(const Vec3d& v) const { return {dot(x, v), dot(y, v), dot(z, v)}; }
+    /// Of the 3x3 part.
     double determinant() const { return dot(cross(x, y), z); }
     /// Returns false if there is none.
     bool inverse(Affine& out) const {

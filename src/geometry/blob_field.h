@@ -22,9 +22,10 @@ inline constexpr double kBlobThreshold = 0.421875;
 
 /// One operation of a tape.
 struct BlobOp {
+    /// What it computes from a, b and c.
     enum class Kind : uint8_t { Constant, Leaf, Add, Multiply, Maximum, Minimum, Subtract, Divide, Negate } kind = Kind::Constant;
     uint32_t a = 0, b = 0; ///< earlier operations; Leaf: a is the leaf; Constant that moves: one more than the index of its float
-    double c = 0;
+    double c = 0;          ///< the constant
 };
 using BlobTape = std::vector<BlobOp>;
 
@@ -39,6 +40,7 @@ public:
     bool read(int leaves, const std::vector<int>& code, const std::vector<float>& numbers,
               const std::vector<std::string>& strings, const Matrix& objectToWorld, const SourcePlace&, Diagnostics&,
               bool moves = false);
+    /// The tape of the request, and its leaves by number.
     const BlobTape& whole() const { return tape_; }
     const std::vector<BlobLeaf>& leaves() const { return leaves_; }
 
@@ -52,9 +54,9 @@ public:
     static BlobTape simplified(const BlobTape&, const std::vector<Interval>& values);
     /// Leaves that colour a point, with their weights (which sum to 1) and the gradients of these.
     struct Share {
-        uint32_t number;
-        double w;
-        Vec3d g;
+        uint32_t number; ///< BlobLeaf::number
+        double w;        ///< share of the leaf
+        Vec3d g;         ///< object space
     };
     /// Replaces the contents of `out`; no leaf where the field is constant.
     void shares(const BlobTape&, const Vec3d&, std::vector<Share>& out) const;

@@ -11,20 +11,21 @@ namespace alpenglow::geometry {
 
 /// A value with its gradient and second derivatives, xx yy zz xy xz yz.
 struct BlobJet {
-    double f = 0;
-    Vec3d g{0.0};
-    double h[6] = {};
+    double f = 0;     ///< value
+    Vec3d g{0.0};     ///< by x, y, z
+    double h[6] = {}; ///< second derivatives
 };
 /// Where these derivatives stand in the matrix of all.
 inline constexpr int kBlobJetRow[6] = {0, 1, 2, 0, 0, 1}, kBlobJetColumn[6] = {0, 1, 2, 1, 2, 2};
 
 /// A depth map under a repelling plane.
 struct BlobGround {
-    int width = 0, height = 0;
+    int width = 0, height = 0; ///< texels
     std::vector<float> depth;
     Matrix toCamera, toScreen; ///< from object space; screen is -1 to 1
+    /// Least and largest depth of some texels.
     struct Range {
-        float least, most;
+        float least, most; ///< depths
     };
     /// Of depths: level k has the texels of the one before two by two, level 0 those of the map.
     std::vector<std::vector<Range>> levels;
@@ -41,16 +42,17 @@ struct BlobGround {
 
 /// One blob: where it is, and the floats that shape it.
 struct BlobLeaf {
+    /// A ball of any affine shape, a rod with round ends, or a repelling ground.
     enum class Kind { Ellipsoid, Segment, Ground } kind = Kind::Ellipsoid;
-    double m[3][4] = {}; ///< from object space to that of the unit sphere, or of the segment over its radius
-    Vec3d from, along;   ///< segment: its start and direction in leaf space
-    double length = 0;
-    uint32_t number = 0;    ///< among all leaves of the request: of its vertex values
-    uint32_t at = 0;        ///< start of its floats in those of the request
-    bool bySegment = false; ///< the floats are two ends and a radius, then the matrix; else the matrix only
-    double thin = 0;        ///< its smallest half axis, object space
-    Vec3d lo, hi;           ///< it is 0 outside, object space
-    std::shared_ptr<const BlobGround> ground;
+    double m[3][4] = {};                      ///< from object space to that of the unit sphere, or of the segment over its radius
+    Vec3d from, along;                        ///< segment: its start and direction in leaf space
+    double length = 0;                        ///< of the segment, object space
+    uint32_t number = 0;                      ///< among all leaves of the request: of its vertex values
+    uint32_t at = 0;                          ///< start of its floats in those of the request
+    bool bySegment = false;                   ///< the floats are two ends and a radius, then the matrix; else the matrix only
+    double thin = 0;                          ///< its smallest half axis, object space
+    Vec3d lo, hi;                             ///< it is 0 outside, object space
+    std::shared_ptr<const BlobGround> ground; ///< null: no ground
     /// A point of object space in the space of the leaf.
     Vec3d inside(const Vec3d& p) const;
 };
@@ -67,6 +69,7 @@ inline constexpr double kBlobSegmentSlope = 2.12;
 /// Bound on the second derivatives of a segment's field.
 inline constexpr double kBlobSegmentBend = 13.2;
 
+/// The third power.
 inline double cube(double x) { return x * x * x; }
 
 /// The leaf's field in its own space, optionally with gradient and second derivatives.

@@ -12,6 +12,7 @@ public:
     /// plan: read with `moves`; numbers: of the request at each key, as many; times: one more than none, from 0 to 1.
     BlobMotion(const BlobField& plan, std::vector<const std::vector<float>*> numbers, std::vector<float> times)
         : plan_(plan), numbers_(std::move(numbers)), times_(std::move(times)) {}
+    /// As given to the constructor.
     const std::vector<float>& times() const { return times_; }
     const BlobField& plan() const { return plan_; }
 
@@ -25,6 +26,7 @@ public:
         double thin = INFINITY;            ///< smallest half axis
         Vec3d lo{INFINITY}, hi{-INFINITY}; ///< all are 0 outside
     };
+    /// Between two times of the shutter, 0 to 1.
     Extent extent(const BlobTape&, float from, float to) const;
     /// A point of the surface at one time, carried along by the leaves that make it to another. Object space.
     Vec3d carried(const BlobTape&, const Vec3d& p, float from, float to) const;

@@ -18,7 +18,9 @@ namespace alpenglow::geometry {
 /// The shape of the request.
 class Blobby final : public KeyedShape {
 public:
+    /// leaves: of the request. Cuts the surface into boxes.
     Blobby(ShapeSource s, BlobField field, int leaves, Diagnostics& diag);
+    /// There is no surface.
     bool empty() const { return boxes_.empty(); }
 
     uint32_t exactPrims() const override { return uint32_t(boxes_.size()); }

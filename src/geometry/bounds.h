@@ -9,7 +9,9 @@ namespace alpenglow::geometry {
 
 /// Empty when lo > hi.
 struct Bounds {
+    /// Corners.
     Vec3 lo{std::numeric_limits<float>::infinity()}, hi{-std::numeric_limits<float>::infinity()};
+    /// Also with a corner that is NaN.
     bool empty() const { return !(lo.x <= hi.x && lo.y <= hi.y && lo.z <= hi.z); }
     /// Extends the box to a point. A coordinate that is NaN changes nothing.
     void add(const Vec3& p) {

@@ -190,8 +190,8 @@ const scene::AttributesRef& FrameBuilder::turned(const scene::AttributesRef& a) 
 ShapeRef FrameBuilder::shapeOf(const PrimitiveRef& p, const scene::AttributesRef& a, const Matrix& toCamera, int instance) {
     ShapeRef s = buildShape(p, a, toCamera, instance, diag_, facing_);
     if (!s || normalsSay(*s, diag_) != NormalsSay::Back) return s;
-    Diagnostics said; // messages of the primitive have been reported
-    return buildShape(p, turned(s->attributesRef()), toCamera, instance, said, facing_);
+    Diagnostics reported; // messages of the primitive have been reported
+    return buildShape(p, turned(s->attributesRef()), toCamera, instance, reported, facing_);
 }
 
 /// The primitive at one or several times of the shutter, in the space that toCamera leads to. Null: reported.
@@ -311,10 +311,10 @@ void FrameBuilder::addShared(const PrimitiveRef& p, const scene::AttributesRef& 
         const Matrix& home = nearest(inst, *p);
         shared.geometry = geometryOf(p, a, home, instance);
         shared.from = inverse(home);
-        Diagnostics said; // reported when the geometry was made
+        Diagnostics reported; // reported when the geometry was made
         const Shape* first = shared.geometry.get();
         if (const auto* deforming = dynamic_cast<const Deforming*>(first)) first = deforming->keys()[0].get();
-        shared.normalsDecide = first && normalsSay(*first, said) != NormalsSay::Nothing;
+        shared.normalsDecide = first && normalsSay(*first, reported) != NormalsSay::Nothing;
         shared.bounds = std::make_shared<SharedBounds>();
     }
     if (!shared.geometry) return;

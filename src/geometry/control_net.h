@@ -9,8 +9,9 @@ namespace alpenglow::geometry {
 
 /// Weights of the control points that act at one parameter value along one direction, with derivatives by the parameter.
 struct BasisSpan {
-    int count = 0;
+    int count = 0;                  ///< number of points that act
     int index[limits::kNurbsOrder]; ///< control index along the direction, wrapped
+    /// By point: weight, first and second derivative.
     double w[limits::kNurbsOrder], d[limits::kNurbsOrder], dd[limits::kNurbsOrder];
 };
 
@@ -24,12 +25,15 @@ public:
     /// B-spline of any order up to limits::kNurbsOrder over the knots, [lo, hi] mapped to 0..1 (RISpec 3.2, 5.2).
     static NetDirection nurbs(int n, int order, std::vector<double> knots, double lo, double hi);
 
+    /// Number of control points.
     int points() const { return n_; }
     /// Pieces that dicing does not cross; also the count of uniform values along the direction.
     int patches() const { return patches_; }
+    /// Whether the direction is periodic.
     bool wrap() const { return wrap_; }
     /// Count of varying values: one a patch border.
     int varyings() const { return wrap_ ? patches_ : patches_ + 1; }
+    /// The points that act at x, 0 to 1.
     BasisSpan at(double x) const;
     /// Whether no weight is negative, so that the surface is within the convex hull of its control points.
     bool convex() const;
@@ -45,8 +49,9 @@ public:
     /// The patch at x, the position of x in it (0..1), and its derivative. NURBS: between knots.
     struct Cell {
         int patch;
-        double at, slope;
+        double at, slope; ///< 0 to 1, and its derivative by x
     };
+    /// For x from 0 to 1.
     Cell cell(double x) const;
 
 private:

@@ -9,6 +9,7 @@ namespace alpenglow::geometry {
 /// For one key; its sources must outlive it.
 class CurveBoxes {
 public:
+    /// parts: into how many primitives a segment is cut.
     CurveBoxes(const CurveSet&, const Matrix& toCamera, uint32_t parts);
     /// Of primitives that follow one another.
     void bounds(uint32_t first, std::span<Bounds> out) const;

@@ -14,22 +14,23 @@ namespace alpenglow::geometry {
 
 /// A value along a curve and its first two derivatives by f.
 struct Jet {
-    Vec3d f, d, dd;
+    Vec3d f, d, dd; ///< value, first and second derivative
 };
 /// A number with its first and second derivative by v.
 struct ScalarJet {
-    double f = 0, d = 0, dd = 0;
+    double f = 0, d = 0, dd = 0; ///< value, first and second derivative
 };
 /// The product, by the product rule.
 Jet cross(const Jet&, const Jet&);
 Jet operator*(const ScalarJet&, const Jet&);
+/// The sum.
 Jet operator+(const Jet&, const Jet&);
 /// Unit vectors; of a vanishing one zero.
 Jet unit(const Jet&);
 
 /// One segment, prepared for intersection or evaluation.
 struct CurveSegment {
-    bool linear = false;
+    bool linear = false; ///< from P0 to P1; else cubic
     Vec3d p[4]; ///< cubic: Bezier points. Linear: the point before it, its ends, the point behind it (an end again where there is
                 ///< none)
     double h[4]; ///< half widths: cubic in Bernstein form; linear: at the ends, [0] and [1]. Not negative
@@ -44,13 +45,14 @@ inline constexpr int kTurnsToRay = 12;
 
 /// The direction that the flat side faces.
 struct CurveFacing {
+    /// Where `at` is used, and how.
     enum Kind {
         Along, ///< everywhere along `at`
         Point, ///< toward `at`
         Given, ///< CurveSegment::n
         Round  ///< a tube
     } kind = Along;
-    Vec3d at;
+    Vec3d at;        ///< direction or point, object space
     double side = 1; ///< sign of B along dC/df ^ N
 };
 
@@ -69,10 +71,11 @@ void acrossFrame(const Vec3d& along, Vec3d& a, Vec3d& b);
 
 /// A ray, its direction being the third axis of a frame around the segment.
 struct CurveRay {
-    Vec3d e1, e2, e3; ///< unit
-    Vec3d org;
+    Vec3d e1, e2, e3;     ///< unit
+    Vec3d org;            ///< object space
     double length, shift; ///< of the direction; t of org
     double lo, hi;        ///< t
+    /// near: a point of the segment; hits are wanted from lo to hi.
     CurveRay(const Vec3d& o, const Vec3d& d, const Vec3d& near, double lo, double hi);
     /// A direction of object space in the axes of the ray.
     Vec3d turned(const Vec3d& v) const { return {dot(v, e1), dot(v, e2), dot(v, e3)}; }
@@ -101,11 +104,13 @@ class CurveSet {
 public:
     /// Reports errors; returns false if there is nothing to draw.
     bool take(const ShapeSource&, Diagnostics&);
+    /// Number of segments of all curves.
     uint32_t segments() const { return uint32_t(curveOf_.size()); }
     struct Place {
         uint32_t face;         ///< curve of the request
         uint32_t local, count; ///< segment of its curve, and how many it has
     };
+    /// Where a segment is in the request.
     Place place(uint32_t segment) const {
         const Row& r = rows_[curveOf_[segment]];
         return {r.face, segment - r.segment, (&r)[1].segment - r.segment};
@@ -118,9 +123,11 @@ public:
     Vec3d axis(uint32_t segment) const;
     /// Prefetches the data for load().
     void fetch(uint32_t segment) const;
+    /// Number of values of a class.
     size_t classCount(scene::Class) const;
     /// Weights at f of a segment; `dv` with respect to v of the complete curve.
     int weights(scene::Class, uint32_t segment, double f, Weight w[16]) const;
+    /// Of the request.
     bool linear() const { return linear_; }
     bool periodic() const { return periodic_; }
     /// Whether the same curves of both are drawn, with the same segments.
@@ -131,6 +138,7 @@ public:
         return linear_ == o.linear_ && periodic_ == o.periodic_ && step_ == o.step_ && !normal_ == !o.normal_ &&
                std::equal(rows_.begin(), rows_.end(), o.rows_.begin(), o.rows_.end(), same);
     }
+    /// Curves are flat and have a direction of their own.
     bool hasNormals() const { return normal_ != nullptr; }
 
 private:

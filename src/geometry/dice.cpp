@@ -266,7 +266,7 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
     }
     corners.finish();
     // Messages are collected by shape and reported in order, so that they do not depend on threads.
-    std::vector<std::vector<Diagnostic>> said(shapes.size());
+    std::vector<std::vector<Diagnostic>> reported(shapes.size());
     std::vector<DiceCost> costs(shapes.size());
     parallelFor(size_t(0), shapes.size(), [&](size_t i) {
         if (opt.stop && *opt.stop) return;
@@ -279,10 +279,10 @@ void diceShapes(const std::vector<ShapeRef>& all, const DiceOptions& opt, Diagno
         const double before = threadSeconds();
         shapes[i]->dice(mine, own);
         costs[i] = costOf(*shapes[i], threadSeconds() - before);
-        said[i] = own.all();
+        reported[i] = own.all();
     });
     if (!(opt.stop && *opt.stop)) seams.close();
-    for (auto& list : said)
+    for (auto& list : reported)
         for (auto& d : list) diag.report(std::move(d));
     noteCosts(shapes, costs, opt, diag);
 }

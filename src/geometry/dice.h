@@ -9,7 +9,7 @@ namespace alpenglow::geometry {
 
 /// The camera for dicing: pixels per unit of length.
 struct DiceCamera {
-    bool perspective = false;
+    bool perspective = false; ///< else orthographic
     double pixelsPerUnit = 1; ///< at distance 1 for a perspective camera, anywhere for an orthographic one
     double narrowest = 1;     ///< smallest foreshortening of a step along the line of sight; 1: none
     /// Length in pixels of a step d at p (camera space). By distance rather than depth: geometry next to or behind the camera is
@@ -30,8 +30,9 @@ class Seams;
 class EdgeCorners;
 class PictureSides;
 
+/// How shapes are diced. All that it refers to must outlive the dicing.
 struct DiceOptions {
-    DiceCamera camera = {};
+    DiceCamera camera = {};         ///< of the frame
     const StopFlag* stop = nullptr; ///< once set, remaining shapes are not diced, and results are void; null: never
     /// Whether displace is to run for a shape; null: for those with a displacement shader (attributes().displacement).
     std::function<bool(const Shape&)> displaces;

@@ -5,6 +5,7 @@
 
 namespace alpenglow::geometry {
 
+/// What dicing one shape took.
 struct DiceCost {
     double seconds = 0; ///< of a processor
     size_t bytes = 0;   ///< of the mesh
@@ -12,6 +13,7 @@ struct DiceCost {
 
 /// Seconds of a processor that this thread has had.
 double threadSeconds();
+/// Of a shape that took so many seconds.
 DiceCost costOf(const Shape&, double seconds);
 /// Reports the most expensive primitive, if it exceeds the threshold of DiceOptions.
 void noteCosts(const std::vector<ShapeRef>&, const std::vector<DiceCost>&, const DiceOptions&, Diagnostics&);

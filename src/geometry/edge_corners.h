@@ -8,12 +8,13 @@
 
 namespace alpenglow::geometry {
 
+/// Collects corners, then finds those on an edge.
 class EdgeCorners {
 public:
     /// A corner on an edge: where along it, from 0 to 1, and the corner.
     struct On {
-        double t;
-        Vec3 P;
+        double t; ///< 0 to 1
+        Vec3 P;   ///< camera space
     };
     /// with: DiceOptions::seamWith of the corners.
     void add(const std::vector<double>& with, std::span<const Vec3> corners);

@@ -12,20 +12,24 @@ namespace alpenglow::geometry {
 /// first end, so that at(t) in one direction and at(1 - t) in the other have the same bits for dyadic t.
 class EdgeCurve {
 public:
+    /// The straight edge between two corners, camera space.
     static EdgeCurve line(const Vec3d& from, const Vec3d& to);
     /// Rational Bezier of any degree from 1 to limits::kNurbsOrder - 1: x, y and z times the weight, and the weight.
     static EdgeCurve bezier(std::span<const std::array<double, 4>>);
     /// centre + x cos(t sweep) + y sin(t sweep), sweep in radians. Direction is preserved.
     static EdgeCurve arc(const Vec3d& centre, const Vec3d& x, const Vec3d& y, double sweep);
 
+    /// Point at t, 0 to 1, camera space.
     Vec3d at(double t) const { return along(reversed_ ? 1 - t : t); }
     /// The same from the first end, optionally with the first two derivatives.
     Vec3d along(double c, Vec3d* slope = nullptr, Vec3d* bend = nullptr) const;
+    /// It is a line.
     bool straight() const { return kind_ == Kind::Line; }
     /// All of it is one point.
     bool collapsed() const { return collapsed_; }
     /// Minimum number of segments that keep its two sides apart: 1, or more if it turns around.
     double fewest() const { return fewest_; }
+    /// It is evaluated from its other end.
     bool reversed() const { return reversed_; }
 
 private:

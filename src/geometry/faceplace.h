@@ -5,6 +5,7 @@
 
 namespace alpenglow::geometry {
 
+/// The face, and where in it the point is.
 struct FacePlace {
     int face = 0;       ///< of the request
     float u = 0, v = 0; ///< 0 to 1 from its first corner to the second, and to the last

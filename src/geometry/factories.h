@@ -4,6 +4,7 @@
 
 namespace alpenglow::geometry {
 
+/// Make the shape of one kind of primitive, not diced. Null: its numbers are wrong, which is reported, or it is empty.
 ShapeRef makeSphere(ShapeSource, Diagnostics&);
 ShapeRef makeCone(ShapeSource, Diagnostics&);
 ShapeRef makeCylinder(ShapeSource, Diagnostics&);
@@ -23,10 +24,13 @@ ShapeRef makePoints(ShapeSource, Diagnostics&);
 ShapeRef makeSubdivisionMesh(ShapeSource, Diagnostics&);
 ShapeRef makeBlobby(ShapeSource, Diagnostics&);
 
+/// A kind of primitive and its factory.
 struct Factory {
     const char* kind; ///< scene::Primitive::kind
+    /// One of the functions above.
     ShapeRef (*make)(ShapeSource, Diagnostics&);
 };
+/// Every kind of scene/primitivekinds.h.
 inline constexpr Factory kFactories[] = {
     {"Sphere", makeSphere},
     {"Cone", makeCone},

@@ -5,11 +5,12 @@
 
 namespace alpenglow::geometry {
 
+/// The cage of a mesh after its hierarchical edits.
 struct EditedCage {
     std::shared_ptr<scene::Primitive>
-        primitive; ///< the request with refined variables, vertex, varying, uniform and face-varying
-    CageInput in;
-    std::vector<FaceDomain> domains;
+        primitive;                   ///< the request with refined variables, vertex, varying, uniform and face-varying
+    CageInput in;                    ///< the refined cage
+    std::vector<FaceDomain> domains; ///< by face: its part of a face of the request
 };
 
 /// Null primitive: no valid edits; errors are reported.

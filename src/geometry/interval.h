@@ -8,6 +8,7 @@ namespace alpenglow::geometry {
 /// The numbers from lo to hi, both included; either may be infinite.
 struct Interval {
     double lo = 0, hi = 0;
+    /// X is one of them.
     bool has(double x) const { return lo <= x && x <= hi; }
 };
 

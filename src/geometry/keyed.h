@@ -20,12 +20,14 @@ inline size_t keyBefore(const std::vector<float>& times, float time, double& way
 /// Whether a shape is a key of a moving shape: pieces that are empty at one key may not be at another.
 inline bool isKey(const ShapeSource& s) { return s.like || !s.primitive->motionKeys.empty(); }
 
+/// A shape whose primitive has several keys: it is cut at each key alike, and interpolated between them.
 class KeyedShape : public Shape {
 public:
     using Shape::Shape;
     /// Makes this the first key; `later` are shapes of the same class from the primitive at later times. times: one more, from 0
     /// to 1. Returns false, without effect, if their pieces do not match.
     bool join(std::vector<ShapeRef> later, std::vector<float> times, Diagnostics&);
+    /// Whether join() has made it the first of several keys.
     bool joined() const { return !later_.empty(); }
 
     using Shape::exactHits;

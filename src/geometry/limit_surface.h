@@ -20,11 +20,13 @@
 
 namespace alpenglow::geometry {
 
+/// Rules of refinement, as in RISpec 3.2, 5.3, and SubdivisionMesh's further schemes.
 enum class SubdivisionScheme { CatmullClark, Loop, Bilinear };
 
 /// The cage. The caller checks indices; a face has no vertex twice. With Loop every face has three corners.
 struct SubdivisionCage {
-    SubdivisionScheme scheme = SubdivisionScheme::CatmullClark;
+    SubdivisionScheme scheme = SubdivisionScheme::CatmullClark; ///< for the whole cage
+    /// Which boundaries the surface interpolates: none, so that border faces are holes; edges and corners; edges alone.
     enum class Boundary { None, EdgeAndCorner, EdgeOnly } boundary = Boundary::None;
     /// Interpolation rule of face-varying values: which boundaries stay sharp.
     enum class FaceVarying {
@@ -33,24 +35,26 @@ struct SubdivisionCage {
         EdgeAndCornerPropagate,
         AlwaysSharp
     } faceVarying = FaceVarying::EdgeAndCorner;
-    bool chaikin = false;         ///< sharpness of a crease is averaged along it
-    bool smoothTriangles = false; ///< special weights for triangles in catmull-clark
-    int vertices = 0;
+    bool chaikin = false;               ///< sharpness of a crease is averaged along it
+    bool smoothTriangles = false;       ///< special weights for triangles in catmull-clark
+    int vertices = 0;                   ///< number of vertices
     std::span<const int> corners;       ///< per face: how many
     std::span<const int> vertex;        ///< per corner
     std::vector<int> creaseEnds;        ///< two vertices a crease
     std::vector<float> creaseSharpness; ///< one a crease; 10 and more are infinite
-    std::vector<int> cornerVertex;
-    std::vector<float> cornerSharpness;
-    std::vector<int> holes; ///< faces
+    std::vector<int> cornerVertex;      ///< vertices
+    std::vector<float> cornerSharpness; ///< one a corner; 10 and more are infinite
+    std::vector<int> holes;             ///< faces
 };
 
 /// Weights of control values at a point: by (`index`), then for derivatives by u, v, uu, uv, vv as requested.
 class LimitWeights {
 public:
-    int count = 0;
-    const int* index = nullptr;
+    int count = 0;              ///< number of control values that act
+    const int* index = nullptr; ///< of these values, `count` numbers
+    /// 0: of the value; 1 to 5: of u, v, uu, uv, vv.
     const double* weights(int derivative) const { return data() + size_t(derivative) * size_t(count); }
+    /// Prepares room for n values and so many sets of weights.
     double* make(int n, int sets);
 
 private:
@@ -67,16 +71,19 @@ public:
     /// `why`: reason if OpenSubdiv rejects the cage; valid() is then false.
     LimitSurface(const SubdivisionCage&, const std::vector<Channel>&, std::string& why);
     ~LimitSurface();
+    /// The cage was accepted.
     bool valid() const { return valid_; }
 
+    /// Numbers of faces, and of pieces with a u and v of their own; whether pieces are triangles.
     uint32_t faces() const { return uint32_t(faceCount_); }
     uint32_t pieces() const { return pieceCount_; }
     bool triangles() const { return scheme_ == SubdivisionScheme::Loop; }
     /// The face of a piece, and which of its corners (0 where a face is one piece).
     struct PieceOf {
-        uint32_t face = 0;
-        int corner = 0;
+        uint32_t face = 0; ///< index
+        int corner = 0;    ///< 0 to 3
     };
+    /// Of a piece below pieces().
     PieceOf pieceOf(uint32_t piece) const;
     /// The first piece of a face.
     uint32_t firstPiece(uint32_t face) const { return firstPiece_.empty() ? face : firstPiece_[face]; }

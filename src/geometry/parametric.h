@@ -6,8 +6,8 @@ namespace alpenglow::geometry {
 
 /// A surface point in object space (or camera space, for patches), in double.
 struct LocalPoint {
-    Vec3d P, Pu, Pv, Puu, Puv, Pvv;
-    Vec3d n, nu, nv; ///< unit normal along Pu x Pv and its derivatives; defined where the product vanishes too
+    Vec3d P, Pu, Pv, Puu, Puv, Pvv; ///< and its derivatives by u and v
+    Vec3d n, nu, nv;                ///< unit normal along Pu x Pv and its derivatives; defined where the product vanishes too
 };
 
 class EdgeCurve;

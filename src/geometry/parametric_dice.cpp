@@ -391,13 +391,13 @@ void Parametric::dice(const DiceOptions& opt, Diagnostics& diag) {
     Unseen unseen(*this, opt);
     Bounds all;
     if (!unseen.none() && hull(0, 0, 1, 1, all) && unseen(all)) return leaveOut(all);
-    Diagnostics said;
-    if (!diceSeen(opt, unseen, said) && !unseen.none()) { // exceeds the declared bound: omitted parts may be visible
+    Diagnostics reported;
+    if (!diceSeen(opt, unseen, reported) && !unseen.none()) { // exceeds the declared bound: omitted parts may be visible
         unseen.lookAnywhere();
         diceSeen(opt, unseen, diag);
         return;
     }
-    for (const Diagnostic& d : said.all()) diag.report(d);
+    for (const Diagnostic& d : reported.all()) diag.report(d);
 }
 
 /// Omits unreachable parts. Returns false if displacement exceeded its bound.

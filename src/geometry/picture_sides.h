@@ -29,9 +29,11 @@ struct DiceOptions;
 /// Parts of a static shape that no ray can reach, for any displacement within its bound.
 class Unseen {
 public:
+    /// For a shape that is not diced yet.
     Unseen(const Shape&, const DiceOptions&);
     /// Whether nothing of the shape may be omitted.
     bool none() const { return !sides_; }
+    /// Whether no ray reaches what lies in the box, camera space.
     bool operator()(Bounds) const;
     void lookAnywhere() { sides_ = nullptr; } ///< none() from now on
 

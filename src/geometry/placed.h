@@ -18,6 +18,7 @@ class Deforming final : public Shape {
 public:
     /// keys: at least two, all of one kind; times: as many, from 0 to 1.
     Deforming(ShapeSource, std::vector<ShapeRef> keys, std::vector<float> times);
+    /// As given to the constructor.
     const std::vector<ShapeRef>& keys() const { return keys_; }
     const std::vector<float>& times() const { return times_; }
     /// The key at or before a time, and the fraction of the way to the next one, 0 to 1.
@@ -76,11 +77,13 @@ public:
     /// toCamera of the source: at shutter open. place: from the geometry's space to camera space; affine, with constant
     /// handedness. bounds: of the geometry, shared by its instances; null: none.
     Placed(ShapeSource, ShapeRef geometry, const scene::Transform& place, std::shared_ptr<SharedBounds> bounds = nullptr);
+    /// In its own space.
     const ShapeRef& geometry() const { return geometry_; }
     /// Null where the geometry is the same at all times.
     const Deforming* deforming() const { return deforming_; }
     /// Null unless primitives are intersected one by one at a time.
     const KeyedShape* keyed() const { return keyed_; }
+    /// Whether place or geometry changes while the shutter is open; whether the place does.
     bool moves() const { return moving_ || deforming_ || (keyed_ && keyed_->joined()); }
     bool placeMoves() const { return moving_ != nullptr; }
     /// Where it is placed at times of the shutter, for one that is placeMoves().

@@ -341,13 +341,13 @@ void PolygonMesh::dice(const DiceOptions& opt, Diagnostics& diag) {
                         " micropolygons; it is diced more coarsely");
     undiced_ = std::move(mesh_); // mesh_.vertices stays: the shape is none of exact hits
     displaced_ = true;
-    Diagnostics said;
+    Diagnostics reported;
     std::vector<Vec3> flat;
-    if (!displaceSeen(d, flat, said) && !d.unseen.none()) { // exceeds the declared bound: omitted parts may be visible
+    if (!displaceSeen(d, flat, reported) && !d.unseen.none()) { // exceeds the declared bound: omitted parts may be visible
         d.unseen.lookAnywhere();
         displaceSeen(d, flat, diag);
     } else {
-        for (const Diagnostic& k : said.all()) diag.report(k);
+        for (const Diagnostic& k : reported.all()) diag.report(k);
     }
     if (d.mesh.P.empty()) {
         Bounds all;

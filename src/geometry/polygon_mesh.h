@@ -26,6 +26,7 @@ class PolygonMesh final : public Shape {
 public:
     /// Moves the lists of the input, to free their memory early.
     PolygonMesh(ShapeSource, PolygonInput&&, const std::vector<float>& P, Diagnostics&);
+    /// There is no triangle.
     bool empty() const { return triangles_ == 0; }
     /// No variable supplies s, t or N: normals are those of the triangles.
     bool plain() const { return plain_; }

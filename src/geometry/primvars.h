@@ -12,13 +12,15 @@ namespace alpenglow::geometry {
 
 /// One variable of a primitive. Values are consecutive, width() floats each.
 struct PrimVar {
-    std::string name;
-    scene::Class cls = scene::Class::Constant;
-    scene::Type type = scene::Type::Float;
-    int arrayLength = 0;                 ///< 0 = not an array
-    const scene::Param* param = nullptr; ///< the request's own parameter; lives as long as the primitive
-    std::vector<float> cameraValues;     ///< points, vectors, normals, hpoints in camera space; empty: uses param->numbers
+    std::string name;                          ///< without its declaration
+    scene::Class cls = scene::Class::Constant; ///< storage class
+    scene::Type type = scene::Type::Float;     ///< of an element
+    int arrayLength = 0;                       ///< 0 = not an array
+    const scene::Param* param = nullptr;       ///< the request's own parameter; lives as long as the primitive
+    std::vector<float> cameraValues;           ///< points, vectors, normals, hpoints in camera space; empty: uses param->numbers
+    /// The values, in the space in which shaders get them.
     const float* data() const { return cameraValues.empty() ? param->numbers.data() : cameraValues.data(); }
+    /// Of an array; else 1.
     int elements() const { return arrayLength > 0 ? arrayLength : 1; }
     /// Floats of a value in data().
     int width() const { return scene::componentCount(type) * elements(); }
@@ -28,8 +30,8 @@ struct PrimVar {
 
 /// One value's share in an interpolated value, and the derivatives of that share.
 struct Weight {
-    size_t index = 0;
-    double w = 0, du = 0, dv = 0;
+    size_t index = 0;             ///< of the value in its class
+    double w = 0, du = 0, dv = 0; ///< share, and its derivatives by u and v
 };
 
 /// The parameter of that name; the last one if there are several. Null if there is none.

@@ -9,7 +9,7 @@ namespace alpenglow::geometry {
 
 /// The profile and its first two derivatives by v.
 struct Profile {
-    Vec3d p, d, dd;
+    Vec3d p, d, dd; ///< object space
 };
 
 /// x^2 + y^2 + zz z^2 + z1 z + c = 0; or the plane z = height.
@@ -22,6 +22,7 @@ struct Implicit {
 /// What the seven shapes share: intersection of the swept profile and its derivatives.
 class Quadric : public Parametric {
 public:
+    /// thetaMaxDegrees: sweep about z, negative: the other way.
     Quadric(ShapeSource, double thetaMaxDegrees, Diagnostics&);
     using Shape::exactHits;
     int exactHits(uint32_t prim, const Vec3d& org, const Vec3d& dir, double lo, double hi, Wanted,

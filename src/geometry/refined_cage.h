@@ -8,8 +8,8 @@ namespace alpenglow::geometry {
 
 /// A cage that owns its lists.
 struct RefinedCage {
-    SubdivisionCage cage; ///< its lists look at those below
-    std::vector<int> corners, vertex;
+    SubdivisionCage cage;                    ///< its lists look at those below
+    std::vector<int> corners, vertex;        ///< per face: how many; per corner
     std::vector<Vec2> origin, along, across; ///< per face: its square in the (u, v) of the original face
     std::vector<scene::Param> values;        ///< numbers of any class but Constant; of face-varying ones one a corner
     std::vector<uint8_t> smooth;             ///< per value: face-varying, smoothed

@@ -16,11 +16,11 @@
 
 namespace alpenglow::geometry {
 
-inline constexpr uint32_t kNone = 0xffffffffu;
+inline constexpr uint32_t kNone = 0xffffffffu; ///< no shape, or no primitive
 
 /// A surface point with the data for shading. Camera space.
 struct SurfacePoint {
-    Vec3 P;
+    Vec3 P;             ///< position
     Vec3 dPdu, dPdv;    ///< first partials by the surface's own u and v
     Vec3 Puu, Puv, Pvv; ///< second partials
     Vec3 Ng;            ///< orientation * (dPdu ^ dPdv), not normalised; n where that product vanishes
@@ -28,7 +28,7 @@ struct SurfacePoint {
     Vec3 N;             ///< shading normal, unit: the primitive variable "N" (or "Np") if given, else n
     Vec3 dNdu, dNdv;    ///< derivatives of N
     float u = 0, v = 0; ///< 0..1 over the complete primitive; polygons: object x and y (RISpec 3.2, 5.1)
-    float s = 0, t = 0, dsdu = 1, dsdv = 0, dtdu = 0, dtdv = 1;
+    float s = 0, t = 0, dsdu = 1, dsdv = 0, dtdu = 0, dtdv = 1; ///< texture coordinates, and their derivatives by u and v
     float pError = 0;            ///< bound on the distance from P to the surface that rays hit: rounding plus facets
     float orientation = 1;       ///< +1 or -1: the sign in Ng above
     int face = 0;                ///< index of the uniform value: patch of a mesh, polygon of a polyhedron
@@ -56,18 +56,19 @@ enum PointNeed : uint32_t {
 
 /// A hit on a shape, and the destination of its surface point.
 struct HitRef {
-    uint32_t prim = 0;
-    double b1 = 0, b2 = 0;
-    SurfacePoint* out = nullptr;
-    float time = 0; ///< of the shutter, 0 to 1
+    uint32_t prim = 0;           ///< of the shape
+    double b1 = 0, b2 = 0;       ///< accel::Hit
+    SurfacePoint* out = nullptr; ///< not null
+    float time = 0;              ///< of the shutter, 0 to 1
 };
 
 /// Triangles in camera space. P holds one unused point past `vertices` (intersectors read 16 bytes at a time).
 struct TriMesh {
     std::vector<Vec3> P;
     std::span<const uint32_t> index; ///< three for each triangle: `made`, or a list owned by the primitive
-    std::vector<uint32_t> made;
+    std::vector<uint32_t> made;      ///< empty: `index` looks at another list
     uint32_t vertices = 0;
+    /// Number of triangles.
     uint32_t triangles() const { return uint32_t(index.size() / 3); }
     /// Ends construction: adds the unused point, and points `index` to `made`.
     void finish() {
@@ -82,7 +83,7 @@ struct TriMesh {
 
 /// A hit of a ray on an exactly intersected shape.
 struct ExactHit {
-    double t, u, v;
+    double t, u, v; ///< distance in lengths of dir; parameters for evaluateHit()
 };
 
 struct DiceOptions;
@@ -95,11 +96,11 @@ enum class Facing { Ray, Eye, Picture };
 
 /// Origin of a shape.
 struct ShapeSource {
-    scene::PrimitiveRef primitive;
+    scene::PrimitiveRef primitive;   ///< never null
     scene::AttributesRef attributes; ///< never null; those of the instance for instanced primitives (RISpec 3.2)
     Matrix toCamera;                 ///< object to camera
     int instance = -1;               ///< index into Frame::instances
-    Facing facing = Facing::Ray;
+    Facing facing = Facing::Ray;     ///< of flat curves and points
     const class Shape* like =
         nullptr; ///< during construction: the shape at an earlier time, which is cut into the same triangles
 };
@@ -111,11 +112,13 @@ float orientationSign(const scene::Attributes&, const Matrix& toCamera);
 /// A primitive, or one instance of it. Immutable once it is diced, so all const functions are thread safe.
 class Shape {
 public:
+    /// Of its origin; dice() completes it.
     explicit Shape(ShapeSource);
     virtual ~Shape() = default;
     Shape(const Shape&) = delete;
     Shape& operator=(const Shape&) = delete;
 
+    /// Of the source.
     const std::string& kind() const { return source_.primitive->kind; }
     const SourcePlace& place() const { return source_.primitive->place; }
     const scene::Attributes& attributes() const { return *source_.attributes; }
@@ -130,6 +133,7 @@ public:
     // ---- intersection -------------------------------------------------------------------------------------------------------
     /// True: rays meet exactHits(). False: rays meet mesh(), hits are (triangle, b1, b2).
     bool exact() const { return mesh_.vertices == 0; }
+    /// In camera space; empty before dice().
     const TriMesh& mesh() const { return mesh_; }
     /// Exact shapes: number of primitives with boxes of their own (curves and points have many); prim of a hit.
     virtual uint32_t exactPrims() const { return 1; }

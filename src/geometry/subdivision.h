@@ -17,6 +17,7 @@ class Subdivision final : public Shape {
 public:
     /// domains: per face of the cage; empty where the cage is the request's own.
     Subdivision(ShapeSource, CageInput&&, std::vector<FaceDomain> domains, Diagnostics&);
+    /// Nothing of it is drawn.
     bool empty() const { return drawn_ == 0; }
     int faces() const override { return int(input_.requestFaces); }
     /// Faces that are cut into pieces have u from k to k + 1 in the piece of corner k.

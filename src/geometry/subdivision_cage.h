@@ -10,18 +10,18 @@ namespace alpenglow::geometry {
 /// values.
 struct CageInput {
     SubdivisionCage cage;
-    std::vector<int> corners, vertex; ///< used by the cage if faces were removed; else the request's own lists
-    std::vector<uint32_t> faceOf;     ///< per face: index in the request; empty: the same
-    std::vector<uint32_t> cornerOf;   ///< per corner the same
-    size_t requestFaces = 0, requestCorners = 0;
-    bool faceVaryingLinear = true; ///< facevarying variables; facevertex ones are always smooth
+    std::vector<int> corners, vertex;            ///< used by the cage if faces were removed; else the request's own lists
+    std::vector<uint32_t> faceOf;                ///< per face: index in the request; empty: the same
+    std::vector<uint32_t> cornerOf;              ///< per corner the same
+    size_t requestFaces = 0, requestCorners = 0; ///< numbers of the request
+    bool faceVaryingLinear = true;               ///< facevarying variables; facevertex ones are always smooth
 };
 
 /// One tag of the request with its arguments.
 struct SubdivisionTag {
-    std::string name;
-    std::span<const float> ints, floats; ///< integers are stored as floats
-    std::span<const std::string> strings;
+    std::string name;                     ///< "crease", "hole", ...
+    std::span<const float> ints, floats;  ///< integers are stored as floats
+    std::span<const std::string> strings; ///< of the tag
 };
 /// The tags of a request. Returns false if their counts do not match, which is reported.
 bool subdivisionTags(const scene::Primitive&, Diagnostics&, std::vector<SubdivisionTag>&);

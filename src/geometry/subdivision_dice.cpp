@@ -295,12 +295,12 @@ void Subdivision::Dicing::border(uint32_t piece, std::vector<uint32_t>& out) con
 void Subdivision::dice(const DiceOptions& opt, Diagnostics& diag) {
     displaced_ = isDisplaced(*this, opt);
     Unseen unseen(*this, opt);
-    Diagnostics said;
-    if (!diceSeen(opt, unseen, said) && !unseen.none()) { // exceeds the declared bound: omitted parts may be visible
+    Diagnostics reported;
+    if (!diceSeen(opt, unseen, reported) && !unseen.none()) { // exceeds the declared bound: omitted parts may be visible
         unseen.lookAnywhere();
         diceSeen(opt, unseen, diag);
     } else {
-        for (const Diagnostic& d : said.all()) diag.report(d);
+        for (const Diagnostic& d : reported.all()) diag.report(d);
     }
     limit_->forgetTopology();
 }

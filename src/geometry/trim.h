@@ -17,7 +17,7 @@ class TrimRegion {
 public:
     /// Parameters of the patch that become 0 and 1.
     struct Domain {
-        double lo[2], hi[2];
+        double lo[2], hi[2]; ///< along u and v
     };
     /// curves: the nine arrays of TrimCurve (scene::Attributes::trimCurve), u, v, w homogeneous. keepInside: removes the outside.
     /// An open loop is closed by a line (with a warning if the gap is visible). Returns null, with a message in `why`, for
@@ -41,8 +41,9 @@ public:
     double density(double v) const;
     /// Nodes and weights for integrals over the kept part, by du dv.
     struct Node {
-        double u, v, weight;
+        double u, v, weight; ///< in the unit square; weights add up to the kept area
     };
+    /// The same for every call.
     std::vector<Node> nodes() const;
 
 private:

@@ -13,7 +13,7 @@ void Accumulator::begin(size_t samples) {
     results.resize(samples);
     lightTargets.clear();
     partTargets.clear();
-    shares.clear();
+    aovSplits.clear();
 }
 
 void Accumulator::contribute(Sched& sched, const Contribution& d) {
@@ -27,8 +27,8 @@ void Accumulator::contribute(Sched& sched, const Contribution& d) {
     }
     sched.add(d.target, d.light);
     contributePart(sched, d.path, d.end, d.light);
-    for (int32_t share = d.share; share >= 0; share = shares[size_t(share)].next)
-        sched.add(shares[size_t(share)].target, d.light * shares[size_t(share)].ratio);
+    for (int32_t share = d.share; share >= 0; share = aovSplits[size_t(share)].next)
+        sched.add(aovSplits[size_t(share)].target, d.light * aovSplits[size_t(share)].ratio);
 }
 
 void Accumulator::contributePart(Sched& sched, const PathRay* path, uint16_t end, const Color& light) {
@@ -39,7 +39,7 @@ void Accumulator::contributePart(Sched& sched, const PathRay* path, uint16_t end
 
 void Accumulator::notFinite(const PathRay* ray, const std::string& what, const SourcePlace& place) {
     ++counters_.nonFinite;
-    if (ray && ray->sample && ray->sample->path >= 0) spoiled.push_back(ray->sample->path);
+    if (ray && ray->sample && ray->sample->path >= 0) invalidSamples.push_back(ray->sample->path);
     diagnostics_.reportOnce(
         "nonfinite:" + what + place.file + std::to_string(place.line),
         {Severity::Warning, Rie::Math, place, what + " is not a finite number; affected samples are dropped", {}, {}});

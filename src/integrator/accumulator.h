@@ -10,6 +10,7 @@ struct SampleResult;
 class LightPathStates;
 struct StageSet;
 
+/// Adds light to targets.
 class Accumulator final : Stage {
 public:
     explicit Accumulator(const StageSet&);
@@ -22,6 +23,7 @@ public:
     /// Discards the camera sample of a ray that carries a value that is not finite. `what` made the value, at `place`; each place
     /// is reported once.
     void notFinite(const PathRay*, const std::string& what, const SourcePlace& place);
+    /// Reports such a value once, with the shader that made it and the sample that repeats it; the sample is dropped.
     void notFinite(const PathRay* ray, const char* what, const ShaderInstance* of);
     void notFinite(const BatchContext&, const PathRay&, uint32_t site); ///< The value came from this call site
     /// Sums of a target whose trace() asks for them (TraceSums); else null.
@@ -31,13 +33,13 @@ public:
         return i == traceSums.end() ? nullptr : &i->second;
     }
 
-    std::unordered_map<AccumulatorId, TraceSums> traceSums;
-    std::vector<Share> shares;
-    std::vector<SampleResult*> results;              ///< by camera sample
-    std::vector<AccumulatorId> lightTargets;         ///< by camera sample: WorldImpl::lightOutputs_
-    std::vector<AccumulatorId> partTargets;          ///< by camera sample and part of the light path outputs
-    AccumulatorId nowhere = shading::kNoAccumulator; ///< a target that no one reads
-    std::vector<int> spoiled;                        ///< PathSample::path of samples to discard; may hold duplicates
+    std::unordered_map<AccumulatorId, TraceSums> traceSums; ///< of targets of a trace() that asks for sums
+    std::vector<AovSplit> aovSplits;                        ///< parts of light for outputs; RayExtra::share is an index in it
+    std::vector<SampleResult*> results;                     ///< by camera sample
+    std::vector<AccumulatorId> lightTargets;                ///< by camera sample: WorldImpl::lightOutputs_
+    std::vector<AccumulatorId> partTargets;                 ///< by camera sample and part of the light path outputs
+    AccumulatorId nowhere = shading::kNoAccumulator;        ///< a target that no one reads
+    std::vector<int> invalidSamples;                        ///< PathSample::path of samples to discard; may hold duplicates
 
 private:
     void contributePart(Sched&, const PathRay*, uint16_t end, const Color& light);

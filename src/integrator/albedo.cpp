@@ -41,7 +41,7 @@ static Color measuredAlbedo(const BlockLobes& s, const PathRay& ray, size_t poin
 }
 
 void LobeSelection::showAlbedo(BatchContext& c) {
-    if (c.aside) return;
+    if (c.lightOutput) return;
     for (size_t point = 0; point < v_.points; ++point) {
         const PathRay& ray = c.rays[point];
         if (!ray.counts) continue;

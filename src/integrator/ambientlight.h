@@ -17,6 +17,7 @@ class ShadowRays;
 struct StageSet;
 class SurfacePoints;
 
+/// Light of ambient lights for calls of ambient().
 class AmbientLight final : Stage {
 public:
     explicit AmbientLight(const StageSet&);

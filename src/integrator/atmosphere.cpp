@@ -97,7 +97,7 @@ void Atmosphere::atmosphereOfBatch(BatchContext& c, int first, int count, bool w
             done[size_t(k - first)] = 1;
             ShadePoint& p = points.emplace_back(c.points[size_t(k)]);
             p.ray = &c.rays[size_t(k)];
-            if (p.ray->parted) p.I = p.P - p.ray->volumeBegin();
+            if (p.ray->crossedMedium) p.I = p.P - p.ray->volumeBegin();
             p.Ci = ci >= 0 ? c.batch->color(ci, k) : Color(0);
             p.Oi = oi >= 0 ? c.batch->color(oi, k) : Color(1);
             of.push_back(k);
@@ -170,7 +170,7 @@ void Atmosphere::atmosphereOfPhotons(BatchContext& c) {
 
 void Atmosphere::atmosphereOfEmitters(const BoundLight& light, std::span<const ShadePoint> queries, std::span<LightValue> values,
                                       const std::vector<char>* inMedium) {
-    if (!light.hazy) return;
+    if (!light.inAtmosphere) return;
     std::vector<ShadePoint> one(1);
     for (size_t i = 0; i < queries.size(); ++i) {
         auto found = world_.emittersInAtmosphere().find(queries[i].shape);

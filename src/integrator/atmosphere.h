@@ -10,6 +10,7 @@ class GatherCalls;
 class KernelInputs;
 struct StageSet;
 
+/// Runs the volume shaders of batches.
 class Atmosphere final : Stage {
 public:
     explicit Atmosphere(const StageSet&);

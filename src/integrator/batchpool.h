@@ -8,9 +8,11 @@ namespace alpenglow::integrator {
 class RayStore;
 struct StageSet;
 
+/// Lends batches; they return when the last user drops them.
 class BatchPool final : Stage {
 public:
     explicit BatchPool(const StageSet&);
+    /// An empty batch.
     std::shared_ptr<BatchContext> take();
     void giveBack(std::shared_ptr<BatchContext>); ///< reused if no one else holds it
     /// Returns a batch whose points are shaded and releases its hold on their targets.

@@ -17,25 +17,25 @@ namespace alpenglow::integrator {
 
 /// A call site of the kernel that requests lobes.
 struct BlockLobes {
-    int number = 0;                 ///< call site of the kernel, or kSegmentEvent
-    const SiteInfo* info = nullptr; ///< null: the phase function of a medium, not a call
-    const LobeKind* kind = nullptr;
-    const LobeLanes* lanes = nullptr;
-    const RayKind* rays = nullptr;
-    bool lighting = false; ///< a lighting shadeop
-    bool lights = false;   ///< its lobe samples lights
-    bool diffuse = false;  ///< its rays are diffuse
-    bool apart = false;    ///< indirectdiffuse(): diffuse lobes of its points leave the light of surfaces to it
-    bool direct = false;   ///< diffuse() where another call adds the light of surfaces
-    bool walks = false;    ///< subsurface(): its rays walk below the surface
-    bool sets = false;     ///< rays of a trace() that hit other surfaces, or other sides, than rays of lighting shadeops
-    uint32_t nth = 0;      ///< how many calls of a strip at this call site came before, in a loop
+    int number = 0;                   ///< call site of the kernel, or kSegmentEvent
+    const SiteInfo* info = nullptr;   ///< null: the phase function of a medium, not a call
+    const LobeKind* kind = nullptr;   ///< which lobe the site requests
+    const LobeLanes* lanes = nullptr; ///< its code at the width in use
+    const RayKind* rays = nullptr;    ///< of the rays that its lobes send
+    bool lighting = false;            ///< a lighting shadeop
+    bool lights = false;              ///< its lobe samples lights
+    bool diffuse = false;             ///< its rays are diffuse
+    bool apart = false;               ///< indirectdiffuse(): diffuse lobes of its points leave the light of surfaces to it
+    bool direct = false;              ///< diffuse() where another call adds the light of surfaces
+    bool walks = false;               ///< subsurface(): its rays walk below the surface
+    bool sets = false; ///< rays of a trace() that hit other surfaces, or other sides, than rays of lighting shadeops
+    uint32_t nth = 0;  ///< how many calls of a strip at this call site came before, in a loop
     std::vector<LobeBlock> lobes;
     std::vector<LightDirected> lightDirected; ///< by point: light-directed sampling (lightdirected.h); empty: none
     std::vector<float> narrow;                ///< arguments, by block, for kernels whose strips are narrower than a block
     std::vector<const float*> rows;           ///< by block: arguments of its first point, `stride` floats apart
-    int stride = 0;
-    std::vector<RayOptions> options; ///< by point; empty: none
+    int stride = 0;                           ///< floats from one row to the next
+    std::vector<RayOptions> options;          ///< by point; empty: none
     /// By point: the request, if it was made point by point (Requests::lobes); null: none. Empty: `rows` hold the arguments.
     std::vector<const LobeVertex*> requests;
     const LobeVertex* requestAt(size_t point) const { return requests.empty() ? nullptr : requests[point]; }
@@ -47,6 +47,7 @@ struct BlockLobes {
     const RayKind& raysAt(size_t point) const { return requests.empty() || !requests[point] ? *rays : *requests[point]->rays; }
     /// By point, for further calls of a call site: how many of the earlier ones had a weight.
     std::vector<uint32_t> occurrence;
+    /// As `occurrence`; 0 where it is empty.
     uint32_t occurrenceAt(size_t point) const { return occurrence.empty() ? 0 : occurrence[point]; }
 
     /// Makes room for a batch and forgets the previous one: no lobe is asked for.
@@ -74,8 +75,8 @@ struct BlockLobes {
 /// A light sample for a point in a medium, and the value of the phase function there.
 struct BlockLit {
     size_t point;
-    Vec3 w, end; ///< w: unit, toward the light; end: end of the shadow ray at an emitter
-    Color Cl;
+    Vec3 w, end;                     ///< w: unit, toward the light; end: end of the shadow ray at an emitter
+    Color Cl;                        ///< radiance of the sample over its density, as Cl of the light
     float density, far, kept, phase; ///< as in LightBlock; kept: by diffuse lobes
     float shadowRadius;              ///< LightValue
     Vec3 L;                          ///< valid if shadowRadius is not 0
@@ -83,13 +84,13 @@ struct BlockLit {
 
 /// A light sample to be evaluated by a light's kernel.
 struct BlockQuery {
-    int point = 0;
+    int point = 0; ///< index in the batch
     Emitter::Sample sample;
 };
 
 /// Points that have a sample of one light; of these, those whose diffuse or specular rays could hit the light.
 struct BlockPlaced {
-    Lanes points = 0, metDiffuse = 0, metSpecular = 0;
+    Lanes points = 0, metDiffuse = 0, metSpecular = 0; ///< sets of points of the block
 };
 
 } // namespace alpenglow::integrator

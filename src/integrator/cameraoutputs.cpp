@@ -52,7 +52,7 @@ void CameraOutputs::add(const BatchContext& c, int point) {
     SampleResult& r = *accumulator_.results[size_t(ray.sample->path)];
     size_t at = 0;
     for (size_t k = 0; k < wantedAt_.size(); at += size_t(world_.widthsOfOutputs()[k++])) {
-        if (!binding.aside.empty() && binding.aside[k]) continue; // LightOutputs::lightOutputBatches() adds it
+        if (!binding.inLightOutputs.empty() && binding.inLightOutputs[k]) continue; // LightOutputs::lightOutputBatches() adds it
         const int width = world_.widthsOfOutputs()[k];
         if (!givenByOthers(c, k, point)) {
             int to = 0;

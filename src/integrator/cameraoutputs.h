@@ -9,6 +9,7 @@ namespace alpenglow::integrator {
 class Accumulator;
 struct StageSet;
 
+/// Fills what a SampleResult has besides light.
 class CameraOutputs final : Stage {
 public:
     explicit CameraOutputs(const StageSet&);

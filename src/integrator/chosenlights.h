@@ -5,6 +5,7 @@
 
 namespace alpenglow::integrator {
 
+/// Light sampling where lights are many: each point chooses some.
 class LightSampling::ChosenLights final : VertexStage {
 public:
     ChosenLights(LightSampling&, const StageSet&, const VertexStages&);

@@ -52,7 +52,7 @@ void LightSampling::ChosenLights::connect(Questions& q, BatchContext& c) {
         if (q.there >> i & 1) points[i] = size_t(q.asked[i]->point);
         lights[i] = &world_.lights()[size_t(q.asked[i]->light)];
     }
-    q.lights.parted = c.between;
+    q.lights.hasPart = c.between;
     for (Lanes left = c.between ? q.there & q.lights.asked : 0; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         q.lights.part[i] =

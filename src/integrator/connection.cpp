@@ -58,6 +58,12 @@ void Connection::noteAlone(const Site& s, size_t lane, int32_t more) {
         {size_t(v_.sent[lane]), more, light, visibilityBit(s.diffuse ? RayType::Diffuse : RayType::Specular)});
 }
 
+/// PathRay::path of light that comes from w.
+uint16_t Connection::pathOf(const Site& s, size_t point, const Vec3& w, const BatchContext& c) const {
+    const uint16_t path = v_.pathOf(s, false, point, w, c);
+    return v_.mirrored ? paths_.next(path, paths_.mirror) : path;
+}
+
 /// Evaluates the lobes of a call site at `points` for their lights, into v_.value; adds the result to shadow rays that were
 /// already sent. pointOf: by lane, index in the batch. Returns the lanes whose ray is still to be sent.
 Lanes Connection::contribute(const Site& s, const VertexBlock& points, const LobeBlock& lobe, LightBlock& l, BatchContext& c,
@@ -81,7 +87,7 @@ Lanes Connection::contribute(const Site& s, const VertexBlock& points, const Lob
         }
         ShadowRay& first = shadows_.queue[size_t(v_.sent[lane])];
         const Color light{v_.shadow.light[0][lane], v_.shadow.light[1][lane], v_.shadow.light[2][lane]};
-        const uint16_t path = v_.pathOf(s, false, pointOf[lane], {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, c);
+        const uint16_t path = pathOf(s, pointOf[lane], {l.w[0][lane], l.w[1][lane], l.w[2][lane]}, c);
         shadows_.more.push_back(
             {light, c.targets[pointOf[lane]], v_.shareOf(s, pointOf[lane], c.rays[pointOf[lane]]), sums, path, first.more});
         first.more = int32_t(shadows_.more.size()) - 1;
@@ -97,7 +103,7 @@ void Connection::connectBlock(size_t b, const BoundLight& of, BatchContext& c) {
     const BoundLight* lights[kBlock];
     std::fill_n(lights, kBlock, &of);
     LightBlock& l = v_.lights[b];
-    l.parted = c.between; // lightSampling_.takeParts()
+    l.hasPart = c.between; // lightSampling_.takeParts()
     stages_.aim(v_.vertices[b], l, v_.shadow);
     std::fill_n(v_.sent, kBlock, -1);
     const Lanes placed = l.asked;
@@ -143,10 +149,10 @@ void Connection::sendShadow(const Site& site, size_t point, size_t lane, const V
     if (site.sets) s.kind = store_.kindOf({RayType::Transmission, false, site.raysAt(point).set, 0});
     s.areaLight = emitter && !site.lighting && site.info->trace->sums;
     if (!world_.media().empty()) s.media = media_.towards(c, int(point), w);
-    s.path = v_.pathOf(site, false, point, w, c);
+    s.path = pathOf(site, point, w, c);
     if (s.path) s.light = paths_.lights[v_.numberOf(of)];
     // Under the other hiders, light loops and trace() with "samplelights" let lights without "shadows" through.
-    const bool asInLoops = !rules_.pickOne && (c.below || (!site.lighting && !emitter && !of.isSky()));
+    const bool asInLoops = !rules_.pickOne && (c.subsurface || (!site.lighting && !emitter && !of.isSky()));
     if (says && says->shadowRadius > 0) { // to a point on the disk
         const VertexBlock& v = v_.vertices[point / kBlock];
         const uint32_t use = kLightPoint + v_.numberOf(of), vertex = v.lightVertex[point % kBlock];
@@ -157,7 +163,7 @@ void Connection::sendShadow(const Site& site, size_t point, size_t lane, const V
         s.distance = length(to) * (1 - 1e-5f);
     }
     // Not occluded; or the light's shader computed visibility itself.
-    if ((asInLoops && !of.shadows) || (says && says->ownShadow)) s.distance = 0;
+    if (of.shadowless || (asInLoops && !of.shadows) || (says && says->ownShadow)) s.distance = 0;
 }
 
 /// Sets the shadow rays of a call with a bias or a limit of distance, and removes samples out of its reach.

@@ -11,6 +11,7 @@ class Accumulator;
 class MediaStacks;
 class ShadowRays;
 
+/// Connects vertices with the light samples of their block.
 class Connection final : VertexStage {
 public:
     Connection(const StageSet&, const VertexStages&);
@@ -28,6 +29,7 @@ public:
     /// point. While it lives, VertexBlocks::shadow is of this call site alone, if it needs that; then the common ones are back.
     class OwnShadows {
     public:
+        /// For a call site of the blocks at hand.
         OwnShadows(Connection&, const Site&);
         OwnShadows(const OwnShadows&) = delete;
         OwnShadows& operator=(const OwnShadows&) = delete;
@@ -47,6 +49,7 @@ private:
     /// Sets alone_ for light that rays of the lobe might also find.
     void weighAlone(const VertexBlock&, const LobeBlock&, const LightBlock&, const float* kept, bool ahead, Lanes met);
     /// For the light of a lane just added to the queue: ShadowRays::AloneLight.
+    uint16_t pathOf(const Site&, size_t point, const Vec3& w, const BatchContext&) const;
     void noteAlone(const Site&, size_t lane, int32_t more);
     void connectBlock(size_t block, const BoundLight&, BatchContext&);
     void limitShadows(const Site&, const size_t* points, const BoundLight* const* lights, LightBlock&);

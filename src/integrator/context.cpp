@@ -3,8 +3,8 @@
 
 namespace alpenglow::integrator {
 
-Context::Context(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
-    : frame(std::move(w)), world(*frame), diagnostics(d), seed(world.settings().seed),
+Context::Context(std::shared_ptr<const WorldImpl> w, Diagnostics& d, bool beforeTracing)
+    : frame(std::move(w)), world(*frame), diagnostics(d), building(beforeTracing), seed(world.settings().seed),
       totalReflection(rsl::internString("totalreflection")), rules(world.settings()) {}
 
 void Counters::operator+=(const Counters& o) {
@@ -32,6 +32,9 @@ void Counters::operator+=(const Counters& o) {
     guided += o.guided;
     guidedLit += o.guidedLit;
     guidedLight += o.guidedLight;
+    searches += o.searches;
+    searchesFound += o.searchesFound;
+    probes += o.probes;
     records += o.records;
     interpolated += o.interpolated;
     depthMax = std::max(depthMax, o.depthMax);
@@ -39,6 +42,8 @@ void Counters::operator+=(const Counters& o) {
     threadBytes = std::max(threadBytes, o.threadBytes);
     if (media.size() < o.media.size()) media.resize(o.media.size());
     for (size_t i = 0; i < o.media.size(); ++i) media[i].all += o.media[i].all, media[i].lost += o.media[i].lost;
+    if (lightRuns.size() < o.lightRuns.size()) lightRuns.resize(o.lightRuns.size());
+    for (size_t i = 0; i < o.lightRuns.size(); ++i) lightRuns[i] += o.lightRuns[i];
 }
 
 uint64_t& Context::raysOf(RayType t) {

@@ -12,6 +12,7 @@ struct Rules {
     bool roulette = false;         ///< Russian roulette ends rays
     bool lightsAtRequests = false; ///< lobes sample lights at their requests
     bool emissionCounts = false;   ///< rays of lobes that sample no lights also see emission
+    /// Of the hider and the frame's options.
     explicit Rules(const Settings& s)
         : pickOne(s.hider == Hider::Path), roulette(pickOne && s.roulette), lightsAtRequests(s.direct && !s.bsdfOnly),
           emissionCounts(pickOne) {}
@@ -19,23 +20,25 @@ struct Rules {
 
 /// A direction in which a path saw a light, or met an opaque surface.
 struct SeenSample {
-    static constexpr int32_t kBlocked = -1;
-    SeenLight seen;
-    int32_t light; ///< index in WorldImpl::lights(); kBlocked: a surface
+    static constexpr int32_t kBlocked = -1; ///< SeenSample::light of a surface
+    SeenLight seen;                         ///< position and direction, camera space
+    int32_t light;                          ///< index in WorldImpl::lights(); kBlocked: a surface
 };
 
 /// One for each thread.
 struct Context {
-    Context(std::shared_ptr<const WorldImpl>, Diagnostics&);
+    /// diagnostics: receives warnings; outlives the context. building: as MakeEvaluator.
+    Context(std::shared_ptr<const WorldImpl>, Diagnostics&, bool building);
     const std::shared_ptr<const WorldImpl> frame; ///< keeps the world alive
-    const WorldImpl& world;
-    Diagnostics& diagnostics;
-    const SeedKey seed;
-    const int32_t totalReflection; ///< the label of rays that Counters::totalReflected counts
-    Rules rules;
-    Counters counters;
-    const StopFlag* stop = nullptr;          ///< null: cannot be stopped
-    std::vector<SeenSample>* seen = nullptr; ///< not null: receives the lights that paths see (learnlights.h)
+    const WorldImpl& world;                       ///< *frame
+    Diagnostics& diagnostics;                     ///< thread safe
+    const bool building;                          ///< the world is not complete: what services answer may change
+    const SeedKey seed;                           ///< of all random numbers
+    const int32_t totalReflection;                ///< the label of rays that Counters::totalReflected counts
+    Rules rules;                                  ///< of the hider
+    Counters counters;                            ///< of this thread
+    const StopFlag* stop = nullptr;               ///< null: cannot be stopped
+    std::vector<SeenSample>* seen = nullptr;      ///< not null: receives the lights that paths see (learnlights.h)
     /// The current call can still be repeated with fewer points at a time, so exceeding the memory for requests is not yet an
     /// error.
     bool beginsAnew = false;

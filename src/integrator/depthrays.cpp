@@ -79,7 +79,7 @@ void seeAtmosphere(MediaStacks& media, std::span<const AtmosphereSegment> ways, 
         Color& l = left[of[k]];
         if (some[k] == Color(1)) continue;
         l *= some[k];
-        out[ways[of[k]].sample].left.push_back({z[k], l});
+        out[ways[of[k]].sample].transmittance.push_back({z[k], l});
     }
 }
 
@@ -99,7 +99,7 @@ private:
         size_t index;
         const shading::Media* media;
         Vec3 begin;
-        Color left{1};
+        Color transmittance{1};
     };
     struct Waiting {
         size_t going;
@@ -122,7 +122,7 @@ private:
 };
 
 void DepthRays::Looking::add(const PathRay& path) {
-    out_[asked_.size()].left.clear();
+    out_[asked_.size()].transmittance.clear();
     now_.push_back({stage_.intersector_.rayOf(path), asked_.size(), path.media, path.origin});
     ShadowRay& s = asked_.emplace_back();
     s.origin = path.origin;
@@ -133,9 +133,9 @@ void DepthRays::Looking::add(const PathRay& path) {
 }
 
 bool DepthRays::Looking::takes(Going& g, const Color& opacity, float z, const scene::Attributes* surface) {
-    g.left *= Color(1) - opacity;
-    if (opacity != Color(0)) out_[g.index].left.push_back({z, g.left, surface});
-    return maxComponent(g.left) > 0;
+    g.transmittance *= Color(1) - opacity;
+    if (opacity != Color(0)) out_[g.index].transmittance.push_back({z, g.transmittance, surface});
+    return maxComponent(g.transmittance) > 0;
 }
 
 /// Finds the next surface of each ray and applies the media before it.
@@ -147,9 +147,9 @@ void DepthRays::Looking::intersect() {
             enterMedia(world_, now_[i].media, now_[i].begin, hits_[i], now_[i].index, i, ways_);
     if (ways_.empty()) return;
     inAtmosphere_.clear();
-    for (const AtmosphereSegment& w : ways_) inAtmosphere_.push_back(now_[w.going].left);
+    for (const AtmosphereSegment& w : ways_) inAtmosphere_.push_back(now_[w.going].transmittance);
     seeAtmosphere(stage_.media_, ways_, asked_, out_, inAtmosphere_);
-    for (size_t k = 0; k < ways_.size(); ++k) now_[ways_[k].going].left = inAtmosphere_[k];
+    for (size_t k = 0; k < ways_.size(); ++k) now_[ways_[k].going].transmittance = inAtmosphere_[k];
 }
 
 void DepthRays::Looking::pass(Going& g, const accel::Hit& h) {
@@ -181,13 +181,13 @@ bool DepthRays::Looking::run() {
         next_.clear(), met_.clear(), waiting_.clear();
         intersect();
         for (size_t i = 0; i < now_.size(); ++i)
-            if (hits_[i].valid() && maxComponent(now_[i].left) > 0) pass(now_[i], hits_[i]);
+            if (hits_[i].valid() && maxComponent(now_[i].transmittance) > 0) pass(now_[i], hits_[i]);
         if (!met_.empty())
             stage_.opacities_.takeOpacities(met_, [&](size_t k, const Color& opacity) {
                 const Waiting& w = waiting_[k];
                 takes(next_[w.going], opacity, w.z, w.surface);
             });
-        std::erase_if(next_, [](const Going& g) { return !(maxComponent(g.left) > 0); });
+        std::erase_if(next_, [](const Going& g) { return !(maxComponent(g.transmittance) > 0); });
         now_.swap(next_);
         if (stop && *stop) return false;
     }

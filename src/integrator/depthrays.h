@@ -10,10 +10,11 @@ class MediaStacks;
 class Opacities;
 struct StageSet;
 
+/// Traces camera rays for their transmittance alone.
 class DepthRays final : Stage {
 public:
     explicit DepthRays(const StageSet&);
-    /// Fills SampleResult::left of camera rays. begin: makes the i-th path ray of the call. Returns false if stopped.
+    /// Fills SampleResult::transmittance of camera rays. begin: makes the i-th path ray of the call. Returns false if stopped.
     bool seeThrough(std::span<const CameraRay>, std::span<SampleResult>,
                     const std::function<void(const CameraRay&, size_t, PathRay&)>& begin);
 

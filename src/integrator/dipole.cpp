@@ -13,7 +13,7 @@ namespace alpenglow::integrator {
 void Walks::probe(int asked) {
     const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(asked)];
-    const SubsurfaceMedium& b = below_[size_t(a.below)];
+    const SubsurfaceMedium& b = media_[size_t(a.subsurface)];
     const ShadePoint& p = c_.points[size_t(a.point)];
     const PathRay& ray = c_.rays[size_t(a.point)];
     const bool turned = dot(p.surface.n, ray.dir) > 0;

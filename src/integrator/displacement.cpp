@@ -68,7 +68,7 @@ void Displacement::take(BatchContext& c) {
             p.P = p.surface.displacedP;
         }
     }
-    if (c.binding->displacementTells) c.displaced = d;
+    if (c.binding->displacementQueried) c.displaced = d;
 }
 
 void Displacement::moveToFacets(BatchContext& c) {

@@ -9,6 +9,7 @@ class GatherCalls;
 class KernelInputs;
 struct StageSet;
 
+/// Runs displacement shaders of batches.
 class Displacement final : Stage {
 public:
     explicit Displacement(const StageSet&);

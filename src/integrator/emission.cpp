@@ -18,6 +18,11 @@ bool guides(const BoundLight& l) {
     return l.kernel && (l.kind == LightKind::Area ? !l.mean : l.kind == LightKind::Environment && l.sky);
 }
 
+/// Whether no ray meets light of `l`, and mirrors and glass bring it by single paths: a light with one place or one direction.
+bool isUnmet(const BoundLight& l) {
+    return l.kernel && !l.photons && !l.instance->moving && (l.kind == LightKind::Point || l.kind == LightKind::Distant);
+}
+
 bool mayEmit(const BoundLight& l, bool sky) {
     if (l.kernel && l.photons) return true;
     if (!l.kernel || l.kind == LightKind::Ambient || (l.kind == LightKind::Environment && !sky)) return false;
@@ -36,7 +41,7 @@ EmissionPlan::EmissionPlan(LightKernels& lights, const PhotonUse& use) : world_(
     for (size_t i = 0; i < world_.lights().size(); ++i) {
         const BoundLight& l = world_.lights()[i];
         if (!mayEmit(l, use.sky || says(l)) || !emitsPhotons(l).value_or(use.all && !some)) continue;
-        if (use.learns && !guides(l)) continue;
+        if (use.learns && !(use.unmet ? isUnmet(l) : guides(l))) continue;
         Light light;
         light.bright = use.learns && l.kind == LightKind::Environment;
         light.light = &l;

@@ -213,6 +213,7 @@ std::vector<Color> emittedPower(LightKernels& lights, const EmissionPlan::Light&
     for (size_t k = 0; k < of.size(); ++k) {
         EmissionStart& s = starts[of[k]];
         s.kept = v[k].kept(RayType::Specular);
+        s.keptDiffuse = v[k].kept(RayType::Diffuse);
         if (!v[k].lit || !isFinite(v[k].Cl)) continue;
         const float far = length(q[k].Ps - (l.light->kind == LightKind::Point ? s.origin : intersectsAt(s.surface)));
         const Color c = v[k].Cl * (s.factor * (falls ? far * far : 1));

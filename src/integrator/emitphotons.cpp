@@ -60,7 +60,7 @@ std::vector<EmissionStart> startBlock(const StageSet& set, const PhotonJob& job,
 
 } // namespace
 
-bool Pipeline::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out, const StopFlag* stop) {
+PhotonTrace& Pipeline::beginPhotons(const PhotonJob& job, const StopFlag* stop) {
     const StageSet& set = stages();
     if (!set.photons.photonTrace()) {
         Rules& rules = set.context.rules;
@@ -69,13 +69,20 @@ bool Pipeline::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::v
     }
     PhotonTrace& t = set.photons.begin();
     set.context.stop = stop;
-    const size_t before = out.size();
     t.job = &job;
-    t.first = first;
-    t.out = &out;
+    t.probes = {};
+    t.ends = {};
     t.diffuse = {RayType::Diffuse, false, {job.met, accel::Sides::Both, shading::HitMode::Default}, 0};
     t.specular = t.diffuse;
     t.specular.type = RayType::Specular;
+    return t;
+}
+
+bool Pipeline::emit(const PhotonJob& job, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out, const StopFlag* stop) {
+    const size_t before = out.size();
+    PhotonTrace& t = beginPhotons(job, stop);
+    t.first = first;
+    t.out = &out;
     const bool done = withinRoom([&] { return emitAll(job, first, count); }, [&] { out.resize(before); });
     const auto key = [](const StoredPhoton& p) {
         return std::tuple(p.number, p.photon.bounces, p.photon.P.x, p.photon.P.y, p.photon.P.z);
@@ -121,8 +128,9 @@ bool Pipeline::emitAll(const PhotonJob& job, uint32_t first, uint32_t count) {
         t.from[i] = {plan.lights()[size_t(s.drawn.light)].number, s.kept};
         r.media = set.photons.aboutLight(plan.lights()[size_t(s.drawn.light)], s);
         if (s.shape) // the atmosphere at the light is applied at the hit
-            if (const auto hazy = w.emittersInAtmosphere().find(s.shape); hazy != w.emittersInAtmosphere().end()) {
-                r.lobeBinding = hazy->second;
+            if (const auto inAtmosphere = w.emittersInAtmosphere().find(s.shape);
+                inAtmosphere != w.emittersInAtmosphere().end()) {
+                r.lobeBinding = inAtmosphere->second;
                 r.lobeOrigin = intersectsAt(s.surface);
             }
         if (w.fades()) sample.level = levelOf(sample.numbers);

@@ -72,6 +72,7 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
         for (const Sched::Task* t : tasks) {
             const PathRay& r = t->payload;
             if (!l.seenBy(*r.kind)) continue;
+            if (l.shadowless && l.sky && r.lobePdf >= 0) continue; // its samples bring all of it
             // For a lobe that samples lights: a light that is off for its surface does not light it by chance either.
             if (r.lobeBinding >= 0 && !world_.bindings()[size_t(r.lobeBinding)].lights.contains(number)) continue;
             if (photons_.bringsPhotons(r, number) || (r.guided() && !(r.trail & shading::kTrailMirrored))) continue;
@@ -84,6 +85,10 @@ void EmittedLight::misses(std::span<const Sched::Task* const> tasks, Sched& sche
             p.ray = &r;
             of.push_back(t);
             litBy_.push_back(store_.extraOf(r).lit);
+            if (l.asksSurface && litBy_.back() >= 0) { // a light without area has the normal of the lit point
+                litSurfaces_.tellPoint(p, litBy_.back());
+                p.N = p.Ns;
+            }
         }
         value.assign(q.size(), {});
         LitSurface lit;
@@ -133,6 +138,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
             litBy_.push_back(store_.extraOf(r).lit);
         }
         const BoundLight& light = world_.lights()[size_t(met[first].light)];
+        for (size_t i = 0; light.asksSurface && i < q.size(); ++i) litSurfaces_.tellPoint(q[i], litBy_[i]);
         value.assign(q.size(), {});
         LitSurface lit;
         if (light.asksSurface) lit = litSurfaces_.querying(litBy_);
@@ -161,6 +167,7 @@ void EmittedLight::emission(std::span<const Met> met, Sched& sched) {
             const PathRay& r = *p.ray;
             if (v.lit && !isFinite(v.Cl)) accumulator_.notFinite(&r, "Cl", light.instance.get());
             if (!v.lit || v.Cl == Color(0) || !isFinite(v.Cl) || photons_.bringsPhotons(r, met[i].light)) continue;
+            if (light.shadowless && r.lobePdf >= 0) continue; // its samples bring all of it
             float weight = r.lobePdf < 0 ? -r.lobePdf : 1;
             if (r.lobePdf >= 0 && light.emitter && light.importance) {
                 float pdf = light.emitter->pdf(p.shape, p.surface, r.lobeOrigin);

@@ -17,6 +17,7 @@ class RayStore;
 class ShadowRays;
 struct StageSet;
 
+/// Adds the light of emitters and skies that rays reach.
 class EmittedLight final : Stage {
 public:
     explicit EmittedLight(const StageSet&);

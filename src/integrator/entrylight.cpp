@@ -39,7 +39,7 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
     c->bound = &b.entering;
     c->binding = &b;
     c->again = true;
-    settleAt(*c, exits);
+    enterAt(*c, exits);
     for (ShadePoint& p : c->points) {
         p.P = p.surface.P; // initial values for surface and displacement shaders
         shading::setFootprint(p, p.ray->footprint, p.ray->dir, 0, 1);
@@ -47,24 +47,24 @@ size_t Walks::askAt(std::span<Exit> exits, Sched& sched) {
     if (b.displacement) displacement_.take(*c);
     for (ShadePoint& p : c->points) p.I = p.ray->dir;
     inputs_.fill(*c);
-    if (c->displaced) c->batch->tell(*c->displaced->batch);
+    if (c->displaced) c->batch->takeDisplacement(*c->displaced->batch);
     c->bound->kernel->run(&c->batch->call());
     c->ran();
     const shading::Batch& batch = *c->batch;
     const int irradiance = batch.output(rsl::OutputName::of(rsl::kEntering));
     const int given = batch.output(rsl::OutputName::given(rsl::kEntering));
-    const auto said = [&](size_t i) { return batch.value(given, 0, int(i)) != 0; };
+    const auto reported = [&](size_t i) { return batch.value(given, 0, int(i)) != 0; };
     for (size_t i = 0; i < exits.size(); ++i) {
         const PathRay& ray = c->rays[i];
         const Color light = batch.color(irradiance, int(i));
-        if (said(i) && isFinite(light))
+        if (reported(i) && isFinite(light))
             accumulator_.contribute(sched, {c->targets[i], ray.weight * light, LightEvent::Surface, &ray,
                                             store_.extraOf(ray).share, b.surface.get()});
     }
     askLights(*c, exits, sched);
     size_t kept = 0;
     for (size_t i = 0; i < exits.size(); ++i)
-        if (!said(i)) exits[kept++] = exits[i];
+        if (!reported(i)) exits[kept++] = exits[i];
     batches_.giveBack(std::move(c));
     return kept;
 }

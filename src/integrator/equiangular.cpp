@@ -173,13 +173,13 @@ private:
         if (c == Color(0)) return;
         ShadowRay shadow{p.Ps, way / far, far * (1 - (area_ ? 1e-6f : 1e-5f)), c, n.flight->target, p.shutter};
         if (v.shadowRadius > 0) toDisk(shadow, v.L, to, v.shadowRadius, n);
-        if (v.ownShadow) shadow.distance = 0;
+        if (v.ownShadow) shadow.distance = 0; // its shader computed visibility itself
         queue(shadow, n);
     }
     /// Light scattered back along the segment for light Cl at its point. density: of the sample on an emitter; 0: another light.
     Color scattered(const Near& n, const Color& Cl, float phase, float kept, float density) const {
         const Homogeneous& h = *medium_.homogeneous;
-        const Color c = *n.weight * h.scattering * h.left(n.t) * Cl;
+        const Color c = *n.weight * h.scattering * h.transmittance(n.t) * Cl;
         return c * (phase * n.scale * kept * (density > 0 ? 1 / density : float(kPi))); // Cl is irradiance / pi
     }
     /// Redirects a shadow ray to a point on the disk around a light.
@@ -192,6 +192,7 @@ private:
     }
     void queue(ShadowRay& s, const Near& n) const {
         const PathRay& r = *n.flight->ray;
+        if (light_.shadowless) s.distance = 0;
         s.ray = &r;
         s.media = r.media;
         s.share = stage_.store_.extraOf(r).share;

@@ -104,7 +104,7 @@ struct Asking {
         r.maxDistance = reach;
         r.kind = kind;
         r.media = c.light ? nullptr : set.media.towards(c, first + lane, w);
-        r.parted = r.passed = false;
+        r.crossedMedium = r.passed = false;
         r.extra = -1;
         r.lobePdf = -1; // no light is sampled for it: emission counts in full
         r.lobeBinding = -1;
@@ -122,7 +122,7 @@ void skySamples(const Asking& a, GatherRows& rows, int begin, int end, int count
         float* row = rows.of(a.lane, k - begin);
         const texture::SkyDirections::Direction d = g.sky->at(a.pair(k, count));
         row[0] = 1;
-        tellRay(g, row, a.triple(a.s.rows[0]), d.w, 1e38f);
+        writeRayValues(g, row, a.triple(a.s.rows[0]), d.w, 1e38f);
         for (const Output& o : g.outputs) {
             if (o.of == Of::SkyColor) putGathered(row, o, d.light);
             else if (o.of == Of::SkyDirection) putGathered(row, o, d.w);
@@ -266,10 +266,10 @@ void castRays(const Asking& a, GatherRows& rows, int begin, int end, int count, 
             met = firstOpaque(a.set, ray, as, g.threshold >= 0 ? Color(a.triple(g.threshold)) : Color(0), hit);
             ++a.set.context.raysOf(kind.type);
         }
-        tellRay(g, row, from, w, met ? float(hit.distance) : 1e38f);
+        writeRayValues(g, row, from, w, met ? float(hit.distance) : 1e38f);
         if (!met) continue;
         row[0] = 1;
-        tellHit(a.set.context.world, g, row, hit, w);
+        writeHitValues(a.set.context.world, g, row, hit, w);
         if (g.shades) shaded.push_back({a.ray(w, from, reach, kept, k, count), row, hit});
     }
     sendMet(a, shaded, begin, end, turns, count, kept, asked, out);
@@ -365,7 +365,7 @@ static void tellSent(const GatherSent& ray, const GatherSite::Output& asked, con
     }
 }
 
-void GatherCalls::tellGather(const BatchContext& c, int point, GatherSent& sent) {
+void GatherCalls::answerGather(const BatchContext& c, int point, GatherSent& sent) {
     const ShadePoint& p = c.points[size_t(point)];
     if (sent.shaded || p.shape != sent.met) return;
     sent.shaded = true;

@@ -13,18 +13,20 @@ struct StageSet;
 /// A ray of a gather() whose hit must be shaded, and where the result goes.
 struct GatherSent {
     PathRay ray;
-    float* row = nullptr; ///< in GatherRows
-    const geometry::Shape* met = nullptr;
-    const GatherSite* site = nullptr;
-    bool quiet = false;  ///< light and opacity are in the row already
-    bool shaded = false; ///< the shaders at the hit have run
+    float* row = nullptr;                 ///< in GatherRows
+    const geometry::Shape* met = nullptr; ///< what the ray hit; null: nothing
+    const GatherSite* site = nullptr;     ///< of its statement
+    bool quiet = false;                   ///< light and opacity are in the row already
+    bool shaded = false;                  ///< the shaders at the hit have run
     /// Values of GatherSite::sent, one behind the other.
     std::vector<float> values;
     /// By entry of GatherSite::sent, where its values end.
     std::vector<size_t> ends;
+    /// The value of an entry of GatherSite::sent.
     shading::GivenValue value(size_t sent) const;
 };
 
+/// Answers gather().
 class GatherCalls final : Stage {
 public:
     explicit GatherCalls(const StageSet&);
@@ -41,7 +43,7 @@ public:
     /// The parameters of a light that the ray meets, with the numbers that it sends; false: it sends none to this light.
     static bool lightParameters(const GatherSent&, const ShaderInstance& light, shading::ParameterBlock&);
     /// Writes the shader results at a hit to the gather() whose ray found it; `point`: in a batch that has run.
-    void tellGather(const BatchContext&, int point, GatherSent&);
+    void answerGather(const BatchContext&, int point, GatherSent&);
 
     std::unordered_map<AccumulatorId, GatherSent*> gathered; ///< rays of gathers that need shaders, by target
 

@@ -32,7 +32,7 @@ void putGathered(float* row, const GatherSite::Output& o, const ShaderValue& t) 
 }
 
 /// Writes the values of a ray that need no shader.
-void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& dir, float distance) {
+void writeRayValues(const GatherSite& g, float* row, const Vec3& origin, const Vec3& dir, float distance) {
     for (const GatherSite::Output& o : g.outputs) {
         if (o.of == GatherSite::Of::Origin) putGathered(row, o, origin);
         else if (o.of == GatherSite::Of::Direction) putGathered(row, o, dir);
@@ -40,7 +40,7 @@ void tellRay(const GatherSite& g, float* row, const Vec3& origin, const Vec3& di
     }
 }
 
-void tellHit(const WorldImpl& world, const GatherSite& g, float* row, const accel::Hit& hit, const Vec3& dir) {
+void writeHitValues(const WorldImpl& world, const GatherSite& g, float* row, const accel::Hit& hit, const Vec3& dir) {
     static const std::set<std::string> fixed = {"u", "v", "s", "t", "Ng", "dPdu", "dPdv", "I"};
     const geometry::Shape& shape = *world.shapes()[hit.shape];
     std::optional<geometry::SurfacePoint> at;

@@ -13,8 +13,9 @@ struct StageSet;
 void putGathered(float* row, const GatherSite::Output&, std::initializer_list<float>);
 void putGathered(float* row, const GatherSite::Output&, const Vec3&);
 void putGathered(float* row, const GatherSite::Output&, const ShaderValue&); ///< of any type that converts to the variable's
-void tellRay(const GatherSite&, float* row, const Vec3& origin, const Vec3& dir, float distance);
-void tellHit(const WorldImpl&, const GatherSite&, float* row, const accel::Hit&, const Vec3& dir);
+/// Write "ray:..." values, and those of the hit, to a ray's row. Camera space, unit direction.
+void writeRayValues(const GatherSite&, float* row, const Vec3& origin, const Vec3& dir, float distance);
+void writeHitValues(const WorldImpl&, const GatherSite&, float* row, const accel::Hit&, const Vec3& dir);
 /// Finds the first surface at which the accumulated opacity reaches the threshold, by channel, 0 to 1; the first one at all
 /// for a threshold of 0. `as`: the ray as a shadow ray. False: there is none.
 bool firstOpaque(const StageSet&, accel::Ray, const ShadowRay& as, const Color& threshold, accel::Hit&);

@@ -9,6 +9,7 @@ namespace alpenglow::integrator {
 
 class Pipeline;
 
+/// Traces camera samples by micropolygons. One for each thread.
 class GridShading {
 public:
     /// The pipeline shades and counts. It must outlive this object.

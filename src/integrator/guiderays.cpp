@@ -80,7 +80,7 @@ void GuideRays::send(const Lobe& l, const Aim& a, const Vec3& w, const LobeValue
     r.kind = l.kind;
     r.trail = uint8_t(shading::kTrailSpread | shading::kGuided * shading::kTrailGuide);
     r.media = media;
-    r.parted = r.passed = r.counts = r.first = false;
+    r.crossedMedium = r.passed = r.counts = r.first = false;
     r.importance *= l.importance;
     RayExtra extra;
     extra.share = l.share;

@@ -14,6 +14,7 @@ namespace alpenglow::integrator {
 class RayStore;
 struct StageSet;
 
+/// Sends and weights the rays of the caustic guide.
 class GuideRays final : Stage {
 public:
     explicit GuideRays(const StageSet&);
@@ -22,8 +23,8 @@ public:
 
     /// The guide's entry for a point. code 0: no ray is sent.
     struct Aim {
-        const CausticGuide::Cell* cell = nullptr;
-        int side = 0, code = 0;
+        const CausticGuide::Cell* cell = nullptr; ///< null: no cell
+        int side = 0, code = 0;                   ///< SurfaceTree::sideOf(); CausticGuide::chanceOf()
         /// PathRay::trail for the rays of the lobe itself.
         uint8_t trail() const {
             return code ? uint8_t(shading::kTrailSpread | code * shading::kTrailGuide | side * shading::kTrailSide) : 0;
@@ -45,10 +46,10 @@ public:
         float indirect;       ///< LobeVertex::indirect times the energy rule, 0 to 1
         float chosen;         ///< probability that the lobe's own ray is drawn
         float spread;         ///< half angle of the lobe, radians
-        const RayKind* kind;
-        int32_t share;
-        float importance;
-        float maxDistance;
+        const RayKind* kind;  ///< of the ray
+        int32_t share;        ///< RayExtra::share
+        float importance;     ///< PathRay::importance
+        float maxDistance;    ///< of the ray
     };
     /// Decides at random whether to send a ray, and samples its direction w.
     bool draws(const PathRay& from, const Aim&, const Vec3& P, Vec3& w) const;
@@ -58,6 +59,7 @@ public:
 
     /// PathRay::lobePdf and trail of the ray that a mirror reflects when hit by `from`.
     float pdfBehindMirror(const PathRay& from) const;
+    /// Trail of the ray behind a mirror that `from` has hit.
     static uint8_t trailBehindMirror(const PathRay& from) {
         if (!(from.trail & shading::kTrailSpread)) return 0;
         return uint8_t(shading::kTrailSpread | shading::kTrailMirrored |

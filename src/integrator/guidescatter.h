@@ -8,9 +8,11 @@ namespace alpenglow::integrator {
 
 class MediaStacks;
 
+/// Sends the guide's rays from the vertices of a block.
 class GuideScatter final : VertexStage {
 public:
     GuideScatter(const StageSet&, const VertexStages&);
+    /// The world has a guide.
     bool on() const { return guide_.on(); }
     /// Marks the rays of a block that were aimed by the guide.
     void mark(size_t block, const BatchContext&);

@@ -9,6 +9,7 @@ namespace alpenglow::integrator {
 struct StageSet;
 class WaitingKernels;
 
+/// Collects hits for kernels.
 class HitQueues final : Stage {
 public:
     explicit HitQueues(const StageSet&);
@@ -17,9 +18,11 @@ public:
     void add(const Sched::Task&, const accel::Hit&, Sched&);
     /// Moves the hits of a group into a batch.
     void take(size_t group, BatchContext&);
+    /// Drops all hits.
     void clear();
     /// Groups to shade now; `all`: every group that has hits.
     std::vector<size_t> ready(bool all) const;
+    /// No hit waits.
     bool empty() const { return groups_.empty(); }
     bool full() const;      ///< more hits are queued than fit into the cache of a core
     size_t longest() const; ///< the group with the most hits

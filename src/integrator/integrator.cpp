@@ -24,9 +24,9 @@ struct Integrator::Impl {
         for (CameraRay& r : all) r.depths = true;
         if (!pipeline.trace(all, out, stop)) return false;
         for (SampleResult& r : out) {
-            r.z = r.left.empty() ? 1e38f : r.left.front().z;
+            r.z = r.transmittance.empty() ? 1e38f : r.transmittance.front().z;
             r.zSecond = 1e38f;
-            r.left.clear();
+            r.transmittance.clear();
         }
         return true;
     }

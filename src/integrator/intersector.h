@@ -7,15 +7,18 @@ namespace alpenglow::integrator {
 
 struct StageSet;
 
+/// Finds what rays hit. Every ray passes through it.
 class Intersector final : Stage {
 public:
     explicit Intersector(const StageSet&);
     /// intersect(): nearest hits; occluded(): whether anything occludes the rays. Rays end at the bounds of deferred procedurals.
     /// together: neighbouring rays are coherent.
     void intersect(std::span<const accel::Ray>, std::span<accel::Hit>, bool together = false);
+    /// The nearest hit of one ray; false: none.
     bool intersect(const accel::Ray&, accel::Hit&);
     /// Nearest hits among the shapes that do not block all light, WorldImpl::byOpacity().few. Rays and hits use its numbers.
     void intersectFew(std::span<const accel::Ray>, std::span<accel::Hit>);
+    /// Whether each ray is blocked by a shape that blocks all light: 1 or 0.
     void occluded(std::span<const accel::Ray>, std::span<uint8_t>);
     /// Transmittance of shadow rays whose answer is available in rows of 16: 1 if unoccluded, else 0. Returns false, without
     /// effect, if these rays need more.

@@ -122,7 +122,7 @@ void IrradianceRecords::sendRecord(const BatchContext& c, int point, uint32_t ca
         ray.maxDistance = n.reach;
         ray.kind = n.kind;
         ray.media = media_.towards(c, point, w);
-        ray.parted = ray.passed = false;
+        ray.crossedMedium = ray.passed = false;
         ray.extra = -1;
         ray.lobePdf = -1; // no light is sampled for it: emission counts in full
         ray.lobeBinding = -1;

@@ -15,6 +15,7 @@ class Requests;
 class ShadowRays;
 struct StageSet;
 
+/// Answers calls of occlusion() and indirectdiffuse() from irradiance records, and makes these.
 class IrradianceRecords final : Stage {
 public:
     explicit IrradianceRecords(const StageSet&);
@@ -24,6 +25,7 @@ public:
                                   const RayKind* kind, uint32_t occurrence);
     void follow(Sched&);     ///< sends the rays of new records
     void keep(const Sched&); ///< stores the records after all rays are traced
+    /// Drops the records whose rays are in flight.
     void forget();
 
 private:

@@ -11,8 +11,8 @@ namespace {
 
 class KernelEvaluator final : public Evaluator {
 public:
-    KernelEvaluator(const WorldImpl& world, Diagnostics& d, const StopFlag* stop)
-        : pipeline_(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, &world), d) {
+    KernelEvaluator(const WorldImpl& world, Diagnostics& d, const StopFlag* stop, bool building)
+        : pipeline_(std::shared_ptr<const WorldImpl>(std::shared_ptr<const WorldImpl>{}, &world), d, building) {
         pipeline_.stages().context.stop = stop;
     }
     void run(const BoundKernel& k, const SurfaceBinding* of, std::vector<ShadePoint>& points, const shading::InstanceView& view,
@@ -39,8 +39,8 @@ private:
 
 } // namespace
 
-std::unique_ptr<Evaluator> makeKernelEvaluator(const WorldImpl& world, Diagnostics& d, const StopFlag* stop) {
-    return std::make_unique<KernelEvaluator>(world, d, stop);
+std::unique_ptr<Evaluator> makeKernelEvaluator(const WorldImpl& world, Diagnostics& d, const StopFlag* stop, bool building) {
+    return std::make_unique<KernelEvaluator>(world, d, stop, building);
 }
 
 } // namespace alpenglow::integrator

@@ -7,6 +7,6 @@
 namespace alpenglow::integrator {
 
 /// A MakeEvaluator. The world must outlive the result.
-std::unique_ptr<Evaluator> makeKernelEvaluator(const WorldImpl&, Diagnostics&, const StopFlag* stop);
+std::unique_ptr<Evaluator> makeKernelEvaluator(const WorldImpl&, Diagnostics&, const StopFlag* stop, bool building);
 
 } // namespace alpenglow::integrator

@@ -5,7 +5,8 @@
 
 namespace alpenglow::integrator {
 
-KernelInputs::KernelInputs(const StageSet& s) : Stage(s.context), answers(world_, diagnostics_, &s.lightKernels) {}
+KernelInputs::KernelInputs(const StageSet& s)
+    : Stage(s.context), answers(world_, diagnostics_, &s.lightKernels, s.context.building) {}
 
 /// The parameters of a binding's surface in the order of a plan.
 const shading::ParameterRows* KernelInputs::parametersOf(int binding, const shading::BatchPlan& plan) {

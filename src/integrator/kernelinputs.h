@@ -9,19 +9,23 @@ namespace alpenglow::integrator {
 
 struct StageSet;
 
+/// Fills the inputs of kernels.
 class KernelInputs final : Stage {
 public:
     explicit KernelInputs(const StageSet&);
     void fill(BatchContext&);                   ///< fills the inputs of a batch from its points
     void bind(rsl::KernelCall&, BatchContext&); ///< sets the callbacks of the kernel
     void viewsOf(const BatchContext&);          ///< the distinct instances of a batch's points, to views and viewOf
+    /// The world of the frame.
     const WorldImpl& world() const { return world_; }
+    /// For warnings of kernels.
     Diagnostics& diagnostics() const { return diagnostics_; }
+    /// Emitted pairs of earlier strips are void.
     bool beginsAnew() const { return context_.beginsAnew; }
 
-    std::vector<shading::InstanceView> views;
-    std::vector<uint32_t> viewOf; ///< by point
-    Services answers;
+    std::vector<shading::InstanceView> views; ///< by instance in the batch
+    std::vector<uint32_t> viewOf;             ///< by point
+    Services answers;                         ///< of this thread
 
 private:
     const shading::ParameterRows* parametersOf(int binding, const shading::BatchPlan&);

@@ -38,6 +38,10 @@ void LastSkies::send(const BatchContext& c, std::span<const LastRay> rays, int n
         p.ray = &c.rays[size_t(r.point)];
         of.push_back(&r);
         surfaces.push_back(r.lit);
+        if (light.asksSurface && r.lit >= 0) {
+            litSurfaces_.tellPoint(p, r.lit);
+            p.N = p.Ns;
+        }
     }
     std::vector<LightValue> value(q.size());
     LitSurface lit;

@@ -16,17 +16,18 @@ class ShadowRays;
 
 /// A sampled direction of a lobe whose ray the depth limit ends.
 struct LastRay {
-    int point;              ///< index in the batch
-    const RayKind* kind;    ///< of the ray that is not sent
-    Vec3 origin, direction; ///< unit direction
-    Color weight;           ///< of the light that it would find, at its target
-    AccumulatorId target;
-    float maxDistance = 1e38f;
-    int lit = -1; ///< index in LitSurfaces::values
-    int32_t share = -1;
-    uint16_t path = 0; ///< PathRay::path of the ray
+    int point;                 ///< index in the batch
+    const RayKind* kind;       ///< of the ray that is not sent
+    Vec3 origin, direction;    ///< unit direction
+    Color weight;              ///< of the light that it would find, at its target
+    AccumulatorId target;      ///< receives the light
+    float maxDistance = 1e38f; ///< the sky counts if nothing is nearer
+    int lit = -1;              ///< index in LitSurfaces::values
+    int32_t share = -1;        ///< RayExtra::share
+    uint16_t path = 0;         ///< PathRay::path of the ray
 };
 
+/// Queues shadow rays to skies that lobes alone reach.
 class LastSkies final : Stage {
 public:
     explicit LastSkies(const StageSet&);

@@ -6,9 +6,11 @@
 
 namespace alpenglow::integrator {
 
+/// Samples the lobes of a block that a depth limit ends.
 class LastVertices final : VertexStage {
 public:
     LastVertices(const StageSet&, const VertexStages&);
+    /// For all blocks of the batch.
     void run(BatchContext&);
 
 private:

@@ -23,7 +23,7 @@ bool mayTrace(const WorldImpl& w) {
 }
 
 bool mayGuide(const WorldImpl& w, const BoundLight& l) {
-    if (!l.kernel || !l.importance || l.mean || l.hazy || l.instance->moving) return false;
+    if (!l.kernel || !l.importance || l.mean || l.inAtmosphere || l.instance->moving) return false;
     return l.isSky() || (l.kind == LightKind::Area && l.emitter && l.emitter->followsDirections() && !w.accel().hasSolids());
 }
 

@@ -9,6 +9,7 @@
 
 namespace alpenglow::integrator {
 
+/// The mixture of lobe and light direction at one point.
 struct LightDirected {
     Vec3 light;      ///< unit, toward the light, if there is one
     float share = 0; ///< probability of sampling toward the light; 0: no light

@@ -32,7 +32,7 @@ Lanes BlockLobes::spreads(size_t b) const {
     const LobeBlock& l = lobes[b];
     Lanes some = 0;
     for (int i = 0; i < kBlock; ++i) some |= Lanes(l.chosen[i] > 0 && l.lobe[kRowDelta][i] == 0) << i;
-    return walks || (info && info->trace && info->trace->onlyLights) ? 0 : some & l.asked & ~l.elsewhere;
+    return walks || (info && info->trace && info->trace->onlyLights) ? 0 : some & l.asked & ~l.ownOrigin;
 }
 
 void BlockLobes::weighLightDirected(size_t b, Row* value) {
@@ -60,7 +60,7 @@ void BlockLobes::addLightDirected(Lanes some, const Row* w, const size_t* pointO
 
 void BlockLobes::draw(size_t b, Lanes some, NumberBlock& u, Row* drawn) const {
     Vec3 directions[kBlock];
-    Lanes aside = 0;
+    Lanes directed = 0;
     for (Lanes left = lightDirected.empty() ? 0 : some; left; left &= left - 1) {
         const int i = std::countr_zero(left);
         Vec2 pair{u.x[i], u.y[i]};
@@ -68,11 +68,11 @@ void BlockLobes::draw(size_t b, Lanes some, NumberBlock& u, Row* drawn) const {
         u.x[i] = pair.x;
         if (!w) continue;
         directions[i] = *w;
-        aside |= 1u << i;
+        directed |= 1u << i;
     }
-    lanes->sample(lobes[b].lobe[0], some & ~aside, u.x, drawn[0]);
-    for (; aside; aside &= aside - 1) {
-        const int i = std::countr_zero(aside);
+    lanes->sample(lobes[b].lobe[0], some & ~directed, u.x, drawn[0]);
+    for (; directed; directed &= directed - 1) {
+        const int i = std::countr_zero(directed);
         for (int q = 0; q < 3; ++q) drawn[kRowDirection + q][i] = directions[i][q];
         drawn[kRowDrawn][i] = 1;
     }

@@ -86,6 +86,14 @@ void LightKernels::gather(BatchContext& c, const SiteInfo& s, int first, std::sp
     for (int lane = 0; lane < lanes; ++lane) c.requestOut[lane] = float(g.counts[size_t(lane)]);
 }
 
+void LightKernels::countRuns(const BoundLight& light, std::span<const BoundLight* const> group) {
+    std::vector<uint64_t>& runs = counters_.lightRuns;
+    runs.resize(world_.lights().size());
+    const auto count = [&](const BoundLight& l) { ++runs.at(size_t(&l - world_.lights().data())); };
+    count(light);
+    for (const BoundLight* l : group) count(*l);
+}
+
 void LightKernels::runWaiting(BatchContext& context) {
     BatchContext* c = &context;
     const BoundKernel& bound = *c->bound;
@@ -176,7 +184,7 @@ void LightKernels::evaluateLight(const BoundLight& light, std::vector<ShadePoint
         k.run(&c->batch->call());
         c->ran();
     }
-    if (world_.clouds().notesLights) world_.clouds().noteLights(light, call.of);
+    if (world_.needs().bakes) countRuns(light, call.of);
     const auto& b = *c->batch;
     queries.swap(c->points);
     for (size_t i = 0; i < queries.size(); ++i) {

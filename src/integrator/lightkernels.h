@@ -19,7 +19,8 @@ class RayStore;
 class ShadowRays;
 struct StageSet;
 
-class LightKernels final : Stage, public Tracer {
+/// Runs the kernels of lights.
+class LightKernels final : Stage, public LightEvaluator {
 public:
     explicit LightKernels(const StageSet&);
     /// Light from one light at the queries; for area lights `samples[i]` is the point on the emitter.
@@ -31,10 +32,13 @@ public:
     void takeShadowSays(LightValue&, const BoundLight&, float radius, float samples);
     /// Probability that a light is among those sampled at a point `at` of the binding, after `bounces` bounces.
     float chanceOf(int light, int binding, const Vec3& at, int bounces) const;
+    /// The world of the frame.
     const WorldImpl& world() const { return world_; }
 
 private:
     void runWaiting(BatchContext&); ///< runs a kernel that waits for rays, strip by strip
+    /// Counts a run for the light, or for all of a LightGroup (LightCall::of).
+    void countRuns(const BoundLight&, std::span<const BoundLight* const> group);
     /// Adds the requests of a light's kernel other than Cl: shadows. The queries are not in the batch.
     void addPairs(BatchContext&, std::vector<ShadePoint>& queries, std::span<LightValue>);
     /// Result of a transmission() or trace() of a light's kernel at a point that it lights; the ray is traced to the end at once.

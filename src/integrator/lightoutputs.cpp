@@ -66,7 +66,7 @@ std::vector<std::shared_ptr<BatchContext>> LightOutputs::lightOutputBatches(cons
         auto run = batches_.take();
         run->bound = &bound;
         run->binding = c.binding;
-        run->aside = &o;
+        run->lightOutput = &o;
         run->displaced = c.displaced;
         run->points.resize(of.size());
         run->rays.reserve(of.size());
@@ -82,7 +82,7 @@ std::vector<std::shared_ptr<BatchContext>> LightOutputs::lightOutputBatches(cons
             run->points[k].ray = &run->rays.back();
         }
         inputs_.fill(*run);
-        if (run->displaced) run->batch->tell(*run->displaced->batch);
+        if (run->displaced) run->batch->takeDisplacement(*run->displaced->batch);
         if (b.moveS) displacement_.moveToFacets(*run);
         if (!bound.kernel->facts().suspends) {
             bound.kernel->run(&run->batch->call());
@@ -95,8 +95,8 @@ std::vector<std::shared_ptr<BatchContext>> LightOutputs::lightOutputBatches(cons
 }
 
 void LightOutputs::finishLightOutputs(BatchContext& c, int first, int lanes, Sched& sched) {
-    const int output = c.batch->output(c.aside->slot);
-    const bool triple = world_.lightOutputs()[size_t(c.aside->number)].size == 3;
+    const int output = c.batch->output(c.lightOutput->slot);
+    const bool triple = world_.lightOutputs()[size_t(c.lightOutput->number)].size == 3;
     for (int i = first; output >= 0 && i < std::min(first + lanes, int(c.points.size())); ++i) {
         const PathRay& ray = c.rays[size_t(i)];
         if (!ray.counts) continue;
@@ -116,7 +116,7 @@ std::vector<LightOutputRequest> LightOutputs::shareLight(const BatchContext& c, 
     for (size_t i = 0; i < c.points.size(); ++i)
         if (runs[0]->points.size() == c.points.size() || c.rays[i].counts) pointOf.push_back(int(i));
     for (const auto& run : runs) {
-        const LightOutput::Kernel& calls = run->bound == &run->aside->V.bound ? run->aside->V : run->aside->S;
+        const LightOutput::Kernel& calls = run->bound == &run->lightOutput->V.bound ? run->lightOutput->V : run->lightOutput->S;
         for (size_t r = 0; r < run->emits.size(); ++r) {
             const EmitRecord& e = run->emits[r];
             const int same = calls.own[size_t(e.site)];
@@ -128,7 +128,7 @@ std::vector<LightOutputRequest> LightOutputs::shareLight(const BatchContext& c, 
                     ++counters_.nonFinite;
                     continue;
                 }
-                if (world_.lightOutputs()[size_t(run->aside->number)].size ==
+                if (world_.lightOutputs()[size_t(run->lightOutput->number)].size ==
                     1) { // a scalar uses the luminance of the throughput
                     const Color& through = run->rays[size_t(point)].weight;
                     for (int k = 0; k < 3; ++k) weight[k] *= through[k] > 0 ? luminance(through) / through[k] : 0;
@@ -145,8 +145,8 @@ std::vector<LightOutputRequest> LightOutputs::shareLight(const BatchContext& c, 
                             weight[k] = 0;
                         }
                     if (ratio == Color(0)) continue;
-                    accumulator_.shares.push_back({run->targets[size_t(point)], ratio, l.share});
-                    l.share = int32_t(accumulator_.shares.size()) - 1;
+                    accumulator_.aovSplits.push_back({run->targets[size_t(point)], ratio, l.share});
+                    l.share = int32_t(accumulator_.aovSplits.size()) - 1;
                     break;
                 }
                 if (!(weight == Color(0))) rest.push_back({run.get(), int(r), lane, weight});

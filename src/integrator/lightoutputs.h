@@ -13,11 +13,12 @@ class WaitingKernels;
 
 /// A pair of an output that shares no lobe with Ci, or not in all components.
 struct LightOutputRequest {
-    BatchContext* run;
-    int record, lane;
-    Color weight;
+    BatchContext* run; ///< the batch of the camera points
+    int record, lane;  ///< EmitRecord of the pair, and its lane
+    Color weight;      ///< of the request
 };
 
+/// Runs the kernels of outputs that receive light.
 class LightOutputs final : Stage {
 public:
     explicit LightOutputs(const StageSet&);

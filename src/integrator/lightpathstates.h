@@ -7,6 +7,7 @@ namespace alpenglow::integrator {
 
 struct StageSet;
 
+/// Advances the automaton of light path outputs.
 class LightPathStates final : Stage {
 public:
     explicit LightPathStates(const StageSet&);
@@ -16,6 +17,7 @@ public:
     uint16_t atLoop(const ShadePoint&, const PathRay&, const Vec3& w, int label) const;
     /// After scattering toward w, unit
     uint16_t atLobe(const LobeKind&, const RayKind&, bool delta, const ShadePoint&, const PathRay&, const Vec3& w) const;
+    /// After the light at the end of the path.
     uint16_t atLight(uint16_t path, const BoundLight& l) const {
         return path ? automaton->next(path, lights[size_t(&l - world_.lights().data())]) : 0;
     }

@@ -15,7 +15,7 @@ namespace alpenglow::integrator {
 /// Whether stage `place` makes the points on the light, or the light is a point, and its kernel needs nothing else.
 bool LightSampling::inRows(const BoundLight& l, const BoundKernel& of) const {
     const bool emitter = l.kind == LightKind::Area;
-    if (!of || l.hazy || l.asksSurface || l.channels || l.sentCl >= 0 || (emitter && !l.emitter)) return false;
+    if (!of || l.inAtmosphere || l.asksSurface || l.channels || l.sentCl >= 0 || (emitter && !l.emitter)) return false;
     if (!emitter && of.plan->readsNormal()) return false; // it is the shading normal of the lit point, which rows lack
     if (emitter ? l.mean || l.emitter->flat().empty() || world_.accel().hasSolids() : l.isSky() || l.cone) return false;
     for (size_t i = 0; emitter && i < l.emitter->flat().size(); ++i)

@@ -5,7 +5,7 @@
 
 namespace alpenglow::integrator {
 
-void tellLit(ShadePoint& p, const ShadePoint& lit) {
+void takeLitPoint(ShadePoint& p, const ShadePoint& lit) {
     p.Ps = lit.P;
     p.lit = &lit.surface;
     p.Ns = lit.N;
@@ -82,9 +82,9 @@ bool placeLightSample(const WorldImpl& world, const BoundLight& light, const Lig
         }
         mix();
         s.shape = nullptr;
-        s.visibility = ~0u;
+        s.visibility = light.shadowless && light.sky ? 0 : ~0u; // rays of lobes do not count it
         p.P = p.Ps + s.direction;
-        p.N = -s.direction;
+        p.N = p.Ns;
         p.Ci = Color(0);
         return true;
     }

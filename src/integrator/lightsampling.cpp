@@ -121,7 +121,7 @@ bool LightSampling::samples(const Site& s, const BoundLight& light) const {
 /// Chooses a point on the light for a lit one. Returns false if the sample carries no light.
 bool LightSampling::placeQuery(const BoundLight& light, const LightGuide* guide, const LightNumbers& u, const ShadePoint& lit,
                                ShadePoint& q, Emitter::Sample& s) const {
-    tellLit(q, lit);
+    takeLitPoint(q, lit);
     if (!placeLightSample(world_, light, guide, u, rules_.pickOne, q, s)) return false;
     // Sides 1: rays pass through the emitter from its back, so it sends nothing there.
     return v_.checksHits || light.kind != LightKind::Area || light.mean || !s.shape->oneSided() ||
@@ -216,7 +216,7 @@ void LightSampling::takeParts(const BoundLight& light, const BatchContext& c) {
 bool LightSampling::needsPoints(const SurfaceBinding& b) const {
     const WorldImpl::LightList& list = world_.lightLists()[size_t(b.lightList)];
     const std::vector<int>& on = world_.sampledOf(list);
-    return !rules_.pickOne || paths_.automaton || choosesLights(list) ||
+    return !rules_.pickOne || paths_.automaton || world_.lightsAsk() || choosesLights(list) ||
            !std::all_of(on.begin(), on.end(), [&](int l) { return inRows_[size_t(l)] != 0; });
 }
 

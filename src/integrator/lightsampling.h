@@ -19,13 +19,15 @@ class MediumEvents;
 class ShadowRays;
 struct LightNumbers;
 
+/// Samples lights for the vertices of a batch.
 class LightSampling final : VertexStage {
 public:
     LightSampling(const StageSet&, const VertexStages&);
     ~LightSampling();
+    /// For all blocks of the batch; shadow rays go to ShadowRays::queue.
     void run(BatchContext&, Sched&);
     /// Records what lights may query of the lit surfaces: VertexBlocks::litSurface.
-    void tellLights(const BatchContext&);
+    void recordLitSurfaces(BatchContext&);
     /// Whether points in media need structures, because lights there read more than rows hold.
     bool needsPoints(const SurfaceBinding&) const;
     /// Samples one light in rows for all points whose lobes take it. Returns false, without effect, if it needs structures.

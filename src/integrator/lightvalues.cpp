@@ -11,7 +11,8 @@
 namespace alpenglow::integrator {
 
 /// A vertex gives one answer to lights that query its surface: that of its first lobe.
-void LightSampling::tellLights(const BatchContext& c) {
+void LightSampling::recordLitSurfaces(BatchContext& c) {
+    surfaces_.pointsOfRows(c);
     v_.litSurface.assign(v_.points, -1);
     std::vector<LitValues>& all = litSurfaces_.values;
     for (size_t k = 0; k < v_.count; ++k) {
@@ -27,7 +28,10 @@ void LightSampling::tellLights(const BatchContext& c) {
                 }
                 v_.litSurface[point] = int(all.size());
                 if (!s.info) { // no call: points in a medium, and exits of walks
-                    all.emplace_back().binding = c.below ? c.bindings[point] : -1;
+                    LitValues& of = all.emplace_back();
+                    of.binding = c.subsurface ? c.bindings[point] : -1;
+                    of.N = c.points[point].N;
+                    of.I = c.points[point].I;
                     continue;
                 }
                 const auto row = [&](int r) { return s.rows[b][size_t(r) * size_t(s.stride) + i]; };
@@ -56,7 +60,7 @@ void LightSampling::askQueries(const BoundLight& light, const BoundKernel* group
         call.lit = &lit;
     }
     std::vector<char> inMedium;
-    if (light.hazy && !world_.media().empty()) {
+    if (light.inAtmosphere && !world_.media().empty()) {
         for (const BlockQuery& a : v_.asked)
             inMedium.push_back(MediaStacks::mediumOf(media_.towards(c, a.point, a.sample.direction)) >= 0);
         call.inMedium = &inMedium;

@@ -32,6 +32,12 @@ LitSurface LitSurfaces::querying(std::span<const int> of) const {
     return lit;
 }
 
+void LitSurfaces::tellPoint(ShadePoint& query, int lit) const {
+    if (lit < 0) return;
+    query.Ns = values[size_t(lit)].N;
+    query.viewI = query.I = values[size_t(lit)].I;
+}
+
 void LitSurfaces::recordOutputs(LitValues& of, const BatchContext& c, size_t point) const {
     if (c.bound->kernel->facts().suspends) return;
     for (auto& [output, v] : of.outputs) {

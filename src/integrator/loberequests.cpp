@@ -174,8 +174,8 @@ static const geometry::SurfacePoint& surfaceAt(const BatchContext& c, size_t poi
 
 /// Reads the parameters of a call. A ray with "weight" 0 is not sent. Returns false if a point must be processed on its own.
 bool LobeRequests::readOptions(Site& s, BatchContext& c) {
-    const auto elsewhere = [](const LobeBlock& l) { return l.elsewhere != 0; };
-    if (!s.info->block->options && rules_.pickOne && std::none_of(s.lobes.begin(), s.lobes.begin() + long(v_.blocks), elsewhere))
+    const auto ownOrigin = [](const LobeBlock& l) { return l.ownOrigin != 0; };
+    if (!s.info->block->options && rules_.pickOne && std::none_of(s.lobes.begin(), s.lobes.begin() + long(v_.blocks), ownOrigin))
         return true;
     const SiteInfo& info = *s.info;
     s.options.assign(v_.blocks * kBlock, {});
@@ -184,7 +184,7 @@ bool LobeRequests::readOptions(Site& s, BatchContext& c) {
             const size_t i = size_t(std::countr_zero(left)), point = b * kBlock + i;
             const auto row = [&](int r) { return s.rows[b][size_t(r) * size_t(s.stride) + i]; };
             RayOptions& o = s.options[point] = rayOptionsOf(info, row);
-            if ((o.elsewhere = s.lobes[b].elsewhere >> i & 1)) {
+            if ((o.ownOrigin = s.lobes[b].ownOrigin >> i & 1)) {
                 if (surfaceAt(c, point).displaced) return false; // then the ray starts at the point after all
                 const int from = info.rows[0];
                 o.from = {row(from), row(from + 1), row(from + 2)};

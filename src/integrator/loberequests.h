@@ -9,6 +9,7 @@ namespace alpenglow::integrator {
 class OcclusionCalls;
 class PhotonStage;
 
+/// Reads requested lobes in rows.
 class LobeRequests final : VertexStage {
 public:
     LobeRequests(const StageSet&, const VertexStages&);

@@ -13,7 +13,7 @@ MediaStacks::MediaStacks(const StageSet& s) : Stage(s.context), atmosphere_(s.at
 
 using shading::Media;
 
-void MediaStacks::tellLost(const Media* m, const ShadePoint& p) const {
+void MediaStacks::reportLost(const Media* m, const ShadePoint& p) const {
     if (m && m->lost)
         diagnostics_.reportOnce(
             "media", {Severity::Warning,
@@ -42,7 +42,7 @@ const Media* MediaStacks::towards(const KernelRun& c, int point, const Vec3& w) 
     if (c.between) return ray.media;
     const ShadePoint& p = c.points[size_t(point)];
     const Media* m = beyond(world_.bindings()[size_t(c.bindings[size_t(point)])], ray.media, p.surface.n, ray.dir, w);
-    tellLost(m, p);
+    reportLost(m, p);
     return m;
 }
 
@@ -78,7 +78,7 @@ void MediaStacks::dim(std::span<const MediumPart> parts, std::span<const ShadowR
         for (end = first; end < order.size() && order[end]->medium == order[first]->medium; ++end) {
             const MediumPart& part = *order[end];
             if (m.homogeneous) {
-                out[part.ray] *= m.homogeneous->left(length(part.to - part.from));
+                out[part.ray] *= m.homogeneous->transmittance(length(part.to - part.from));
                 continue;
             }
             ShadePoint& p = points.emplace_back();

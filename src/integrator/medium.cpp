@@ -77,13 +77,13 @@ bool MediumEvents::leaks(const RaySegment& f) {
 std::optional<MediumEvents::Crossing> MediumEvents::cross(RaySegment& f, size_t flight, Vec2 u, Sched& sched) {
     const PathRay& ray = *f.ray;
     const Homogeneous& h = *world_.media()[size_t(ray.medium())].homogeneous;
-    const Color before = ray.weight, left = h.left(f.length);
+    const Color before = ray.weight, left = h.transmittance(f.length);
     glow(f, h, sched);
     const bool both = ray.counts; // keeps opacity and depth of camera rays exact
     if (both) addOpacity(ray, Color(1) - left);
     Color part(std::fabs(before.x), std::fabs(before.y), std::fabs(before.z));
     const float sum = part.x + part.y + part.z;
-    f.left = left;
+    f.transmittance = left;
     if (!(maxComponent(h.scattering) > 0) || !(sum > 0) || !std::isfinite(sum) || !(f.length > 0)) return {};
     part = part / sum;
     Crossing c{flight, {}, before * store_.extraOf(ray).indirect};
@@ -114,7 +114,7 @@ std::optional<MediumEvents::Crossing> MediumEvents::cross(RaySegment& f, size_t 
     } else {
         drawn = sigma > 0 ? -exact::log(1 - y) / sigma : INFINITY;
         c.stops = drawn < f.length;
-        if (!c.stops) f.left = left / float(survives);
+        if (!c.stops) f.transmittance = left / float(survives);
         else f.over = true;
     }
     c.way.t = float(std::min(drawn, double(f.length)));
@@ -127,11 +127,11 @@ void MediumEvents::pass(RaySegment& f, Sched& sched) {
     const ShadePoint& p = *f.point;
     PathRay r = ray;
     const RayExtra& extra = store_.extraOf(ray);
-    r.weight = (extra.fade.fades() ? extra.whole : ray.weight) * f.left;
+    r.weight = (extra.fade.fades() ? extra.whole : ray.weight) * f.transmittance;
     if (const int medium = ray.medium(); medium >= 0 && !world_.media()[size_t(medium)].homogeneous) {
         std::vector<ShadePoint> at(1, p); // its shader runs up to here
         at[0].ray = &ray;
-        if (ray.parted) at[0].I = p.P - ray.volumeBegin();
+        if (ray.crossedMedium) at[0].I = p.P - ray.volumeBegin();
         at[0].Ci = at[0].Oi = Color(0);
         AtmosphereEffect h;
         atmosphere_.atmosphereEffects(world_.media()[size_t(medium)], world_.bindings()[size_t(f.binding)], at, {&h, 1}, true);
@@ -145,8 +145,8 @@ void MediumEvents::pass(RaySegment& f, Sched& sched) {
     r.maxDistance = ray.maxDistance - travelled;
     r.footprint = ray.footprint.after(travelled);
     r.media = media_.beyond(world_.bindings()[size_t(f.binding)], ray.media, p.surface.n, ray.dir, ray.dir);
-    media_.tellLost(r.media, p);
-    r.parted = true;
+    media_.reportLost(r.media, p);
+    r.crossedMedium = true;
     r.vertex = childVertex(ray.vertex, kSegmentEvent, 1);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) {
@@ -231,7 +231,7 @@ void MediumEvents::scatter(std::span<RaySegment> segmentEvents, std::span<const 
         if (!x.stops) continue;
         const RaySegment& f = segmentEvents[x.flight];
         PathRay& r = c->rays.emplace_back(*f.ray);
-        const Vec3d left = x.way.leftAt(x.way.t);
+        const Vec3d left = x.way.transmittanceAt(x.way.t);
         const double density = x.way.density(left);
         for (int k = 0; k < 3; ++k)
             r.weight[k] = density > 0 ? float(x.weight[k] * m.homogeneous->scattering[k] * (left[k] / density)) : 0;

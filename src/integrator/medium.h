@@ -18,6 +18,7 @@ class Equiangular {
 public:
     /// Without a value if the light has no known position, or is so far away that it lights the segment almost uniformly.
     static std::optional<Equiangular> of(const FreeFlight&, const BoundLight&, MediumSampling);
+    /// Whether look() finds the light.
     static bool sees(const FreeFlight& f, const BoundLight& l, MediumSampling how) { return Equiangular().look(f, l, how); }
     float at(float u) const;       ///< a point for a number in [0, 1), as a distance along the segment
     double density(float t) const; ///< per unit of length
@@ -52,6 +53,7 @@ struct StageSet;
 ///  Joint Importance Sampling of Low-Order Anisotropic Volume Scattering, 2013).
 class MediumEvents final : Stage, public SegmentEvent {
 public:
+    /// With the media of the world.
     explicit MediumEvents(const StageSet&);
     void happen(std::span<RaySegment>, Sched&) override;
     /// Does nothing: MediaStacks::dim() applies the transmittance.

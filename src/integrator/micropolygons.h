@@ -17,28 +17,31 @@ namespace alpenglow::integrator {
 
 /// Identifies a micropolygon, or a corner of micropolygons.
 struct MicropolygonKey {
-    uint32_t shape = 0, prim = 0;
-    uint16_t steps[2] = {0, 0}; ///< of the lattice along its two parameters; 0: shaded for one sample alone
-    uint16_t at[2] = {0, 0};    ///< cell, or corner, in the lattice
+    uint32_t shape = 0, prim = 0; ///< as in accel::Hit
+    uint16_t steps[2] = {0, 0};   ///< of the lattice along its two parameters; 0: shaded for one sample alone
+    uint16_t at[2] = {0, 0};      ///< cell, or corner, in the lattice
     bool corner = false;
     bool operator==(const MicropolygonKey&) const = default;
+    /// It belongs to a lattice, so several samples may see it.
     bool shared() const { return steps[0] > 0; }
+    /// Of all members.
     uint64_t hash() const;
 };
 
 /// The weight, 0 to 1, of a micropolygon in a sample. b1, b2: where it is shaded on its primitive, as in accel::Hit; for a
 /// shared() one set by Micropolygons::place().
 struct MicropolygonShare {
-    MicropolygonKey key;
+    MicropolygonKey key; ///< which micropolygon
     double b1 = 0, b2 = 0;
     float weight = 1;
 };
 
 /// Pixel size and eye for all lattices: a pinhole camera at shutter open.
 struct MicropolygonCamera {
+    /// From resolution, projection and screen window.
     explicit MicropolygonCamera(const scene::Options&);
-    bool perspective;
-    float pixel; ///< side of a pixel in camera space: at distance 1 along the axis (perspective), or anywhere (orthographic)
+    bool perspective; ///< else orthographic
+    float pixel;      ///< side of a pixel in camera space: at distance 1 along the axis (perspective), or anywhere (orthographic)
     /// Unit direction from the eye to a point.
     Vec3 towards(const Vec3& p) const { return perspective && dot(p, p) > 0 ? normalize(p) : Vec3(0, 0, 1); }
     /// Side of a pixel at the distance of a point, camera space.
@@ -48,10 +51,12 @@ struct MicropolygonCamera {
 /// Finds the micropolygons that camera samples see. One per thread; the world must outlive it.
 class Micropolygons {
 public:
+    /// The world has been built.
     explicit Micropolygons(const WorldImpl&);
+    /// A micropolygon that a hit sees.
     struct Found {
-        uint32_t hit; ///< index of the hit
-        MicropolygonShare share;
+        uint32_t hit;            ///< index of the hit
+        MicropolygonShare share; ///< and its weight
     };
     /// Finds the micropolygons of each valid hit, in order of hits: one, or with ShadingInterpolation "smooth" up to four corners
     /// whose weights sum to 1. points: positions of the hits, camera space.

@@ -25,7 +25,7 @@ void NestedTrace::forget() { inner_.reset(); }
 
 const StageSet& NestedTrace::begin() {
     if (!inner_) {
-        inner_ = std::make_unique<Pipeline>(context_.frame, diagnostics_);
+        inner_ = std::make_unique<Pipeline>(context_.frame, diagnostics_, context_.building);
         for (SegmentEvent* e : segmentEvents_.events)
             if (e != &mediumEvents_) inner_->stages().segmentEvents.happens(*e); // it has its own
         inner_->stages().context.raysAtOnce = std::min(context_.raysAtOnce, int(Sched::kStripRays));
@@ -45,8 +45,9 @@ void NestedTrace::takeCounts() {
     const StageSet& s = inner_->stages();
     counters_ += s.context.counters;
     s.context.counters = {};
-    accumulator_.spoiled.insert(accumulator_.spoiled.end(), s.accumulator.spoiled.begin(), s.accumulator.spoiled.end());
-    s.accumulator.spoiled.clear();
+    accumulator_.invalidSamples.insert(accumulator_.invalidSamples.end(), s.accumulator.invalidSamples.begin(),
+                                       s.accumulator.invalidSamples.end());
+    s.accumulator.invalidSamples.clear();
 }
 
 shading::TargetValue NestedTrace::trace(BatchContext& c, const SiteInfo& s, int point, const std::function<float(int)>& row,
@@ -80,7 +81,7 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
         const uint32_t vertex = childVertex(from.vertex, kLightPoint + l.site, occurrence * 4096);
         if (chance < 1 && in.store.random(from).one(vertex, kRoulette, 0) >= chance) return {};
     }
-    const Vec3 start = l.elsewhere ? l.from : p.P;
+    const Vec3 start = l.ownOrigin ? l.from : p.P;
     const bool leaves = p.lit && length(start - p.Ps) <= geometry::roundingError(p.Ps) + 4 * p.lit->pError;
     in.requests.rows.prepare();
     const BsdfBatch::Place place = l.place;
@@ -113,7 +114,7 @@ shading::TargetValue NestedTrace::follow(BatchContext& c, const SiteInfo& s, int
         r.origin = l.bias >= 0 ? start + w * l.bias
                    : leaves    ? geometry::offsetOrigin(*p.lit, w, 0)
                                : start + w * geometry::roundingError(start);
-        r.parted = r.passed = false, r.trail = 0, r.path = 0; // its light belongs to the light's kernel
+        r.crossedMedium = r.passed = false, r.trail = 0, r.path = 0; // its light belongs to the light's kernel
         if (!leaves || (dot(from.dir, p.lit->n) < 0) != (dot(w, p.lit->n) > 0)) r.media = nullptr; // the media there are unknown
         r.dir = w;
         r.maxDistance = l.maxDistance;

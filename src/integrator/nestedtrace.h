@@ -13,6 +13,7 @@ class Pipeline;
 struct GatherSent;
 struct StageSet;
 
+/// Traces rays of kernels of lights at once.
 class NestedTrace final : Stage {
 public:
     explicit NestedTrace(const StageSet&);

@@ -16,6 +16,7 @@ class ShadowRays;
 struct StageSet;
 class SurfacePoints;
 
+/// Makes the rays of hemisphere calls.
 class OcclusionCalls final : Stage {
 public:
     explicit OcclusionCalls(const StageSet&);
@@ -33,6 +34,7 @@ public:
         int samples;
         float bias;
     };
+    /// Computed at first use; null: no shape.
     const OfShape& ofShape(const geometry::Shape*);
     /// Records whether the calling surface itself occludes the hemisphere about a unit normal.
     void noteTurnedAway(const BatchContext&, const SiteInfo&, int point, const Vec3& normal);

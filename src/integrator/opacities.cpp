@@ -45,7 +45,7 @@ void Opacities::opacities(std::span<const OpacityQuery> met, std::span<Color> ou
     }
     std::vector<shading::InstanceView> views(met.size(), b.surface->view());
     c.batch = std::make_shared<shading::Batch>(c.bound->kernel, *c.bound->plan, c.points, views, world_);
-    if (b.displacementTells && (c.displaced = displacement_.displace(c))) c.batch->tell(*c.displaced->batch);
+    if (b.displacementQueried && (c.displaced = displacement_.displace(c))) c.batch->takeDisplacement(*c.displaced->batch);
     inputs_.bind(c.batch->call(), c);
     c.bound->kernel->run(&c.batch->call());
     c.ran();

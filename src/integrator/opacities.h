@@ -10,6 +10,7 @@ class Displacement;
 class KernelInputs;
 struct StageSet;
 
+/// Runs kernels that compute opacity alone.
 class Opacities final : Stage {
 public:
     explicit Opacities(const StageSet&);

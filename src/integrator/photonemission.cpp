@@ -1,6 +1,10 @@
+#include "bsdf/sampling.h"
+#include "integrator/emission.h"
 #include "integrator/integrator.h"
+#include "integrator/intersector.h"
 #include "integrator/photonstage.h"
 #include "integrator/pipeline.h"
+#include <algorithm>
 
 namespace alpenglow::integrator {
 
@@ -43,7 +47,76 @@ double PhotonEmission::power() const {
 void PhotonEmission::learn(std::span<const StoredPhoton> stored, uint32_t pass, uint32_t emitted) {
     impl_->plan->learn(stored, impl_->job(pass, emitted), emitted);
 }
-void PhotonEmission::tellLights() const {
+void PhotonEmission::addSeeds(std::span<const StoredPhoton> stored, uint32_t pass, std::vector<CausticSeed>& to,
+                              Diagnostics& d) const {
+    Pipeline pipeline(impl_->world, d);
+    const StageSet& set = pipeline.stages();
+    const PhotonJob job = impl_->job(pass, 1);
+    const WorldImpl& world = *impl_->world;
+    const size_t before = to.size();
+    std::vector<PhotonProbe> probes;
+    for (const StoredPhoton& p : stored) {
+        const float power = luminance(p.photon.power);
+        EmissionStart s;
+        s.drawn = impl_->plan->draw(job.numbers(p.number));
+        if (!p.caustic || !(power > 0) || p.photon.bounces < 1 || s.drawn.light < 0) continue;
+        const EmissionPlan::Light& l = impl_->plan->lights()[size_t(s.drawn.light)];
+        startPhotons(set.lightKernels, *impl_->plan, l, {&s, 1});
+        accel::Ray ray;
+        ray.org = s.origin;
+        ray.dir = s.dir;
+        ray.time = world.shadesAtOpen() ? 0 : s.drawn.time;
+        ray.only = job.met;
+        ray.sides = accel::Sides::Both;
+        accel::Hit hit;
+        if (!set.intersector.intersect(ray, hit)) continue;
+        const geometry::Bounds b = world.shapes()[hit.shape]->bounds();
+        const bool distant = l.light->kind == LightKind::Distant;
+        CausticSeed& seed = to.emplace_back();
+        seed.light = l.number;
+        seed.pass = pass;
+        seed.number = p.number;
+        seed.bounces = p.photon.bounces;
+        seed.start = distant ? s.origin : s.dir;
+        constexpr float kOfSize = 5e-4f; // differences lose kOfSize squared to curvature, 1e-7 / kOfSize to rounding
+        seed.step =
+            std::clamp(kOfSize * length(b.hi - b.lo) / (distant ? 1 : hit.t), distant ? 1e-5f : 5e-5f, distant ? 1e3f : 1e-3f);
+        seed.P = p.photon.P;
+        seed.dir = -p.photon.direction();
+        seed.side = SurfaceTree::sideOf(photonmap::unpackUnit(p.photon.normal));
+        seed.power = power;
+        const Vec3 at = distant ? s.origin : s.dir;
+        const Basis f(s.dir);
+        for (const Vec3& by : {Vec3(0.f), f.t * seed.step, f.u * seed.step}) {
+            PhotonProbe& probe = probes.emplace_back();
+            probe.light = l.number;
+            probe.origin = distant ? at + by : s.origin;
+            probe.dir = distant ? s.dir : normalize(at + by);
+            probe.time = s.drawn.time;
+            probe.numbers = job.numbers(p.number);
+            probe.bounces = seed.bounces;
+        }
+    }
+    std::vector<ProbeEnd> ends(probes.size());
+    if (!pipeline.probe(job, probes, ends, nullptr)) return;
+    for (size_t i = before; i < to.size(); ++i) {
+        const ProbeEnd* const e = &ends[3 * (i - before)];
+        CausticSeed& seed = to[i];
+        const auto at = [&](const ProbeEnd& end) {
+            return end.origin + end.dir * (dot(seed.P - end.origin, e->dir) / dot(end.dir, e->dir));
+        };
+        if (!e->arrives) {
+            seed.light = -1;
+            continue;
+        }
+        seed.dir = e->dir;
+        for (int k = 0; k < 2; ++k)
+            if (e[k + 1].arrives) seed.columns[k] = (at(e[k + 1]) - at(*e)) / seed.step;
+    }
+    to.erase(std::remove_if(to.begin() + long(before), to.end(), [](const CausticSeed& s) { return s.light < 0; }), to.end());
+}
+
+void PhotonEmission::markPhotonLights() const {
     impl_->world->photons()->lightsOfPasses = impl_->plan->emits();
     impl_->world->photons()->widthOfPasses = impl_->use.width;
 }

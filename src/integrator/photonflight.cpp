@@ -1,4 +1,5 @@
 #include "integrator/photonflight.h"
+#include "base/hash.h"
 #include "bsdf/sampling.h"
 #include "integrator/accumulator.h"
 #include "integrator/lobeselection.h"
@@ -101,7 +102,7 @@ void PhotonFlight::follow(BatchContext& c, Sched& sched) {
     lookBack(c, sched);
     rest(c);
     for (size_t b = 0; b < v_.blocks; ++b) send(b, c, sched);
-    if (!subsurface_.below.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
+    if (!subsurface_.media.empty()) subsurface_.walk(c, sched); // may run further batches in blocks
 }
 
 void PhotonFlight::mark(BatchContext& c) {
@@ -193,7 +194,7 @@ void PhotonFlight::rest(const BatchContext& c) {
     if (!asked) return;
     for (size_t point = 0; world_.moves() && point < v_.points; ++point)
         if (const ShadePoint& p = c.points[point]; p.shape) t.fastest = std::max(t.fastest, length(p.shape->velocity(p.surface)));
-    for (size_t point = 0; point < v_.points && !c.between; ++point) restAt(point, c);
+    for (size_t point = 0; point < v_.points && !c.between && t.probes.empty(); ++point) restAt(point, c);
 }
 
 void PhotonFlight::restAt(size_t point, const BatchContext& c) {
@@ -215,7 +216,7 @@ void PhotonFlight::restAt(size_t point, const BatchContext& c) {
         spread |= s.walks && t.job->caustics;
     }
     const bool caustic = from.bounces > 0 && !(from.trail & shading::kTrailSpread);
-    const Color power = t.power[size_t(from.sample->path)] * from.weight * leftOfPhoton(c, point) * float(t.job->scale);
+    const Color power = t.power[size_t(from.sample->path)] * from.weight * photonTransmittance(c, point) * float(t.job->scale);
     if (!spread || (t.job->caustics && !caustic) || !isFinite(power) || !(maxComponent(power) > 0)) return;
     StoredPhoton s;
     const Vec3& n = p.surface.displaced ? p.surface.displacedN : p.surface.n;
@@ -248,10 +249,35 @@ void PhotonFlight::send(size_t b, BatchContext& c, Sched& sched) {
 }
 
 void PhotonFlight::extend(size_t b, BatchContext& c) {
+    const bool probes = !photons_.photonTrace()->probes.empty();
     for (Lanes left = v_.next.goes; left; left &= left - 1) {
         const int i = std::countr_zero(left);
-        if (!extendAt(b, size_t(i), c)) v_.next.goes &= ~(1u << i);
+        if (!extendAt(b, size_t(i), c) || (probes && endsProbe(b, size_t(i), c))) v_.next.goes &= ~(1u << i);
     }
+}
+
+/// Whether directions at the points of a batch may depend on random numbers: then paths by them are not found again.
+static bool drawsNumbers(const BatchContext& c) {
+    return c.bound && std::any_of(c.bound->sites.begin(), c.bound->sites.end(),
+                                  [](const SiteInfo& s) { return s.kind == SiteKind::Random; });
+}
+
+/// Notes how a probe leaves a point; true: it ends there.
+bool PhotonFlight::endsProbe(size_t b, size_t i, const BatchContext& c) {
+    PhotonTrace& t = *photons_.photonTrace();
+    const ScatterBlock& next = v_.next;
+    const size_t point = b * kBlock + i;
+    const PathRay& from = c.rays[point];
+    ProbeEnd& end = t.ends[size_t(from.sample->path)];
+    if (drawsNumbers(c)) return true;
+    end.chance /= next.scale[i];
+    const uint64_t site = uint64_t(uint32_t(c.bindings[point])) << 32 | uint32_t(v_.sites[size_t(next.site[i])].number);
+    end.way = mix64(end.way ^ mix64(site + 0x9e3779b97f4a7c15ull));
+    if (from.bounces + 1 < t.probes[size_t(from.sample->path)].bounces) return false;
+    end.arrives = true;
+    end.origin = rowsAt(next.origin, i), end.dir = rowsAt(next.direction, i);
+    end.light = rowsAt(next.weight, i) * t.power[size_t(from.sample->path)] * end.chance;
+    return true;
 }
 
 /// Sets power, direction and origin of a photon behind a point; false: it ends there.
@@ -269,7 +295,7 @@ bool PhotonFlight::extendAt(size_t b, size_t i, BatchContext& c) {
     const float indirect = (s.lighting && !s.walks ? v_.vertices[b].energyScale[i] : 1) * v_.indirectOf(s, point);
     const Color through = l.narrow >> i & 1 ? back_[point] : request * (f * (next.scale[i] * indirect));
     Color weight = from.weight * through;
-    weight *= leftOfPhoton(c, point) * photonWay(s, point, c, w);
+    weight *= photonTransmittance(c, point) * photonWay(s, point, c, w);
     if (!isFinite(weight)) {
         accumulator_.notFinite(c, from, uint32_t(s.number));
         return false;
@@ -286,6 +312,7 @@ bool PhotonFlight::extendAt(size_t b, size_t i, BatchContext& c) {
 /// Survival probability of a photon; 0: it ends.
 float PhotonFlight::survival(const PathRay& from, const Color& request, const Color& weight, float dice) const {
     const int bounces = from.bounces + 1;
+    if (!photons_.photonTrace()->probes.empty()) return 1;
     if (world_.settings().localRoulette) return std::max(rouletteLocal(bounces, request, dice), 0.f);
     if (bounces <= 3) return 1;
     // A light that traces sends rays at every vertex: throughput ends this tree of rays.
@@ -307,9 +334,9 @@ float PhotonFlight::photonWay(const Site& s, size_t point, const BatchContext& c
     const Vec3 in = normalize(p.I), tilt = in - from.dir;
     const float factor = photonFactor(&l.lobe[0][i], *s.kind, delta, -in, w, n, N);
     if (delta && length(tilt) > kLeastTilt / 4) {
-        const Vec3 aside = tilt - N * dot(tilt, N);
+        const Vec3 across = tilt - N * dot(tilt, N);
         const float si = sine(in, N), index = si > 0 ? sine(w, N) / si : 1;
-        w = normalize(w - aside * index);
+        w = normalize(w - across * index);
     }
     return factor;
 }
@@ -327,7 +354,7 @@ void PhotonFlight::keep(size_t b, const BatchContext& c) {
         const uint64_t kind = reinterpret_cast<uintptr_t>(kinds[s.diffuse]);
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
         r.pdf[i] = -1;
-        const bool sampled = s.lightsAt(point) && !((v_.next.single | l.elsewhere) >> i & 1);
+        const bool sampled = s.lightsAt(point) && !((v_.next.single | l.ownOrigin) >> i & 1);
         r.binding[i] = sampled || !c.between ? c.bindings[point] : -1;
         const auto depths = l.boundless >> i & 1 ? PhotonDepths::of(from)
                                                  : depthsBehind(from, world_.bindings()[size_t(c.bindings[point])], s.diffuse);

@@ -17,6 +17,7 @@ class SubsurfaceWalks;
 class Transparency;
 class VertexLight;
 
+/// Stores and continues photons.
 class PhotonFlight final : VertexStage {
 public:
     PhotonFlight(const StageSet&, const VertexStages&);
@@ -47,6 +48,7 @@ private:
     void send(size_t block, BatchContext&, Sched&);
     void extend(size_t block, BatchContext&);
     bool extendAt(size_t block, size_t lane, BatchContext&);
+    bool endsProbe(size_t block, size_t lane, const BatchContext&);
     float photonWay(const Site&, size_t point, const BatchContext&, Vec3& w) const;
     float survival(const PathRay&, const Color& request, const Color& weight, float dice) const;
     void keep(size_t block, const BatchContext&);

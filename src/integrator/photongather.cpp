@@ -63,7 +63,7 @@ bool PhotonGather::isNarrow(const Site& s, size_t point, float below, BatchConte
 bool PhotonGather::seesAll(const Site& s, size_t point, const BatchContext& c) const {
     const shading::RaySet& set = s.raysAt(point).set;
     const float reach = s.options.empty() ? 1e38f : s.options[point].maxDistance;
-    return !(s.lobes[point / kBlock].elsewhere >> point % kBlock & 1) && !set.only && !(reach < 1e37f) &&
+    return !(s.lobes[point / kBlock].ownOrigin >> point % kBlock & 1) && !set.only && !(reach < 1e37f) &&
            set.mode == shading::HitMode::Default && set.sides == accel::Sides::Front &&
            world_.bindings()[size_t(c.bindings[point])].photons.intersectsBoth;
 }

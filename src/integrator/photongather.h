@@ -11,6 +11,7 @@ class Accumulator;
 class GuideRays;
 class PhotonStage;
 
+/// Adds light of photons at vertices.
 class PhotonGather final : VertexStage {
 public:
     PhotonGather(const StageSet&, const VertexStages&);

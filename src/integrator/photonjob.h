@@ -1,9 +1,11 @@
 // Photon emission: the distribution over lights (EmissionPlan), parameters of one emission (PhotonJob), and the stored photons.
 #pragma once
 #include "integrator/batchcontext.h"
+#include "integrator/photonprobe.h"
 #include "world/storedphoton.h"
 #include <algorithm>
 #include <cmath>
+#include <span>
 
 namespace alpenglow::integrator {
 
@@ -13,10 +15,10 @@ struct PhotonUse;
 
 /// Random numbers of one photon at emission.
 struct EmissionDraw {
-    int light = -1;        ///< in EmissionPlan::lights(); -1: none
-    float chance = 0;      ///< probability of choosing this light
-    Vec2 place, way, cone; ///< uniform in the unit square; `way` is warped by the guide
-    float choose = 0, side = 0, time = 0;
+    int light = -1;                             ///< in EmissionPlan::lights(); -1: none
+    float chance = 0;                           ///< probability of choosing this light
+    Vec2 place, way, cone;                      ///< uniform in the unit square; `way` is warped by the guide
+    float choose = 0, side = 0, time = 0;       ///< in [0, 1)
     float density = 1;                          ///< density of `way`
     SampleNumbers numbers{Sampler(0, 0, 0), 0}; ///< the photon's own generator, for random() in shaders
 };
@@ -42,10 +44,12 @@ public:
     /// Lights that emit by their attributes: those with "emitphotons" 1; if no light of the frame sets it, all others except what
     /// PhotonUse::all excludes (false: only lights that set it).
     EmissionPlan(LightKernels&, const PhotonUse&);
+    /// Whether no light emits; the lights that do.
     bool empty() const { return lights_.empty(); }
     const std::vector<Light>& lights() const { return lights_; }
     /// Whether anything moves that photons may hit or leave; distance that lights move while the shutter is open.
     bool moves() const;
+    /// The longest distance that a light moves, camera space.
     float travel() const;
     /// By light of the world: whether it emits.
     std::vector<uint8_t> emits() const;
@@ -71,15 +75,16 @@ private:
 
 /// Parameters of one emission.
 struct PhotonJob {
-    const EmissionPlan* plan = nullptr;
-    const uint8_t* met = nullptr; ///< by shape
-    uint64_t seed = 0;
-    uint32_t pass = 0;     ///< each pass has other photons
-    bool caustics = false; ///< stores caustic photons only; photons continue along delta lobes only
-    bool learns = false;   ///< PhotonUse::learns
-    double scale = 1;      ///< factor of photon power: one over the number of emitted photons
-    bool models = true;    ///< Attribute "photon" "shadingmodel" counts
-    float width = 0;       ///< caustics: lobes with a smaller spread, in radians, count as mirrors
+    const EmissionPlan* plan = nullptr; ///< lights and their shares of the photons
+    const uint8_t* met = nullptr;       ///< by shape
+    uint64_t seed = 0;                  ///< of all random numbers
+    uint32_t pass = 0;                  ///< each pass has other photons
+    bool caustics = false;              ///< stores caustic photons only; photons continue along delta lobes only
+    bool learns = false;                ///< PhotonUse::learns
+    double scale = 1;                   ///< factor of photon power: one over the number of emitted photons
+    bool models = true;                 ///< Attribute "photon" "shadingmodel" counts
+    float width = 0;                    ///< caustics: lobes with a smaller spread, in radians, count as mirrors
+    /// The numbers of a photon; photons are numbered over all threads.
     SampleNumbers numbers(uint32_t photon) const {
         return {Sampler(SeedKey(seed ^ 0x70686f746f6e7331ull), int(pass >> 24), int(pass & 0xffffffu)), photon};
     }
@@ -87,17 +92,20 @@ struct PhotonJob {
 
 /// Photons in flight.
 struct PhotonTrace {
-    const PhotonJob* job = nullptr;
-    uint32_t first = 0;       ///< photon number for PathSample::path 0
-    std::vector<Color> power; ///< by path: power for throughput 1, in units of job->scale
+    const PhotonJob* job = nullptr;      ///< what is emitted
+    std::span<const PhotonProbe> probes; ///< by path; empty: photons are stored
+    std::span<ProbeEnd> ends;            ///< by path, of the probes
+    uint32_t first = 0;                  ///< photon number for PathSample::path 0
+    std::vector<Color> power;            ///< by path: power for throughput 1, in units of job->scale
+    /// Where a photon comes from.
     struct From {
         int light = -1; ///< index in WorldImpl::lights()
         float kept = 1; ///< EmissionStart::kept
     };
-    std::vector<From> from; ///< by path
-    std::vector<StoredPhoton>* out = nullptr;
-    RayKind diffuse, specular;
-    float fastest = 0; ///< largest distance that surfaces hit by photons move while the shutter is open
+    std::vector<From> from;                   ///< by path
+    std::vector<StoredPhoton>* out = nullptr; ///< receives the stored photons
+    RayKind diffuse, specular;                ///< kinds of their rays
+    float fastest = 0;                        ///< largest distance that surfaces hit by photons move while the shutter is open
 };
 
 /// Remaining diffuse and specular bounces of a caustic photon, by the surfaces that it hit (Attribute "trace" "maxdiffusedepth",
@@ -105,7 +113,9 @@ struct PhotonTrace {
 struct PhotonDepths {
     static constexpr int kAll = 255; ///< no limit
     int diffuse = kAll, specular = kAll;
+    /// As stored in the ray.
     static PhotonDepths of(const shading::PathRay& r) { return {r.asked >> 8, r.asked & 255}; }
+    /// Stores both in the ray.
     void to(shading::PathRay& r) const { r.asked = uint16_t(diffuse << 8 | specular); }
 };
 
@@ -125,7 +135,7 @@ float photonFactor(const float* lobe, const LobeKind&, bool delta, const Vec3& f
                    const Vec3& N);
 
 /// Transmittance of the volume before a photon's hit.
-inline Color leftOfPhoton(const BatchContext& c, size_t point) {
+inline Color photonTransmittance(const BatchContext& c, size_t point) {
     return c.atmosphereEffects.empty() || !c.atmosphereEffects[point].on ? Color(1) : c.atmosphereEffects[point].slope;
 }
 

@@ -67,7 +67,7 @@ void PhotonFlight::shadeBack(BatchContext& c, const BatchContext& from) {
         c.rays[t.point].dir = -w;
     }
     inputs_.fill(c);
-    if (c.displaced) c.batch->tell(*c.displaced->batch);
+    if (c.displaced) c.batch->takeDisplacement(*c.displaced->batch);
     c.bound->kernel->run(&c.batch->call());
     c.ran();
 }
@@ -168,7 +168,7 @@ float PhotonFlight::energyScale(const Color& reflected, const Color& clear, cons
     float scale = 1;
     for (int k = 0; k < 3 && !world_.settings().unbiased; ++k)
         if (reflected[k] + clear[k] > 1 && reflected[k] > 0) scale = std::min(scale, (1 - clear[k]) / reflected[k]);
-    if (scale < 0.999f) selection_.tellScaled(of, maxComponent(reflected) > 1);
+    if (scale < 0.999f) selection_.reportScaled(of, maxComponent(reflected) > 1);
     return scale;
 }
 

@@ -133,7 +133,7 @@ void PhotonStage::takeGlobalMaps(BatchContext& c, Sched& sched) {
             const Color light =
                 map->radiance({p.surface.displaced ? p.surface.displacedP : p.surface.P, dot(n, r.dir) > 0 ? -n : n,
                                world_.bindings()[size_t(c.bindings[i])].photons.estimator, 0});
-            shading_.tellAsker(c, int(i), Color(1), sched);
+            shading_.answerCall(c, int(i), Color(1), sched);
             accumulator_.contribute(sched, {c.targets[i], r.weight * light, LightEvent::Photons, &r, store_.extraOf(r).share,
                                             nullptr, paths_.atPhotons(r.path)});
             store_.freeExtra(r);

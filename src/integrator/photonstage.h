@@ -17,15 +17,16 @@ class Transparency;
 
 /// A lobe of a photon shading model; current space.
 struct ModelLobe {
-    const LobeKind* kind = nullptr;
-    Vec3 axis; ///< unit
-    Color weight;
-    const RayKind* rays = nullptr;
-    float a = 0; ///< LobeParams::a
+    const LobeKind* kind = nullptr; ///< its formula
+    Vec3 axis;                      ///< unit
+    Color weight;                   ///< reflectance, by channel
+    const RayKind* rays = nullptr;  ///< of the rays that continue
+    float a = 0;                    ///< LobeParams::a
 };
 inline constexpr int kModelLobes = 2;           ///< most lobes of a model
 inline constexpr uint32_t kModelSite = 0xfff00; ///< number of the first; larger than any call site of a shader
 
+/// What photons do at surfaces, and what their maps give.
 class PhotonStage final : Stage {
 public:
     explicit PhotonStage(const StageSet&);

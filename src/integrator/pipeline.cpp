@@ -47,7 +47,7 @@ namespace alpenglow::integrator {
 
 /// The stages, connected by `set`. Each is made after the stages that its constructor uses.
 struct Pipeline::Parts {
-    Parts(std::shared_ptr<const WorldImpl>, Diagnostics&);
+    Parts(std::shared_ptr<const WorldImpl>, Diagnostics&, bool building);
     Context context;
     StageSet set;
     RayStore store;
@@ -88,8 +88,8 @@ struct Pipeline::Parts {
     LastSkies lastSkies;
 };
 
-Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
-    : context(std::move(w), d),
+Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d, bool building)
+    : context(std::move(w), d, building),
       set{context,      store,         paths,        accumulator,  intersector,    queues,       surfaces,  segmentEvents,
           emitted,      litSurfaces,   transparency, lightKernels, nested,         mediumEvents, occlusion, records,
           gathers,      guide,         shadows,      opacities,    media,          atmosphere,   batches,   inputs,
@@ -105,7 +105,8 @@ Pipeline::Parts::Parts(std::shared_ptr<const WorldImpl> w, Diagnostics& d)
     if (std::any_of(world.media().begin(), world.media().end(), event)) segmentEvents.happens(mediumEvents);
 }
 
-Pipeline::Pipeline(std::shared_ptr<const WorldImpl> w, Diagnostics& d) : parts_(std::make_unique<Parts>(std::move(w), d)) {}
+Pipeline::Pipeline(std::shared_ptr<const WorldImpl> w, Diagnostics& d, bool building)
+    : parts_(std::make_unique<Parts>(std::move(w), d, building)) {}
 
 Pipeline::~Pipeline() { // strips of an abandoned frame need their kernels
     parts_->nested.forget();
@@ -178,7 +179,7 @@ void Pipeline::beginRay(const CameraRay& c, size_t i, PathRay& r) {
 }
 
 void Pipeline::beginTrace() {
-    parts_->accumulator.spoiled.clear();
+    parts_->accumulator.invalidSamples.clear();
     parts_->waitingKernels.waiting.clear();
     parts_->queues.clear();
 }
@@ -272,7 +273,7 @@ void Pipeline::takeResults(std::span<SampleResult> out, std::span<const Accumula
         Color& o = out[i].opacity;
         o = {std::min(o.x, 1.f), std::min(o.y, 1.f), std::min(o.z, 1.f)};
     }
-    for (int i : sums.spoiled) out[size_t(i)].color = Color(std::numeric_limits<float>::quiet_NaN());
+    for (int i : sums.invalidSamples) out[size_t(i)].color = Color(std::numeric_limits<float>::quiet_NaN());
 }
 
 void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
@@ -292,7 +293,7 @@ void Pipeline::follow(std::span<const Sched::Task> slice, Sched& sched) {
     // While kernels wait for rays no hits are held back: depth first keeps the number of frames small.
     const bool all = sched.frameBytes() > 0 || p.context.raysAtOnce < Context::kSlice;
     for (size_t g : p.queues.ready(all)) shadeHits(g, sched);
-    while (p.queues.full()) settle(sched);
+    while (p.queues.full()) shadeQueued(sched);
 }
 
 /// Notes a ray that may have seen a sky and met an opaque surface instead (Context::seen).
@@ -302,7 +303,7 @@ void Pipeline::blocked(const PathRay& r, const accel::Hit& h) {
         parts_->context.seen->push_back({{r.lobeOrigin, r.dir}, SeenSample::kBlocked});
 }
 
-bool Pipeline::settle(Sched& sched) {
+bool Pipeline::shadeQueued(Sched& sched) {
     if (parts_->queues.empty()) return false;
     shadeHits(parts_->queues.longest(), sched);
     return true;

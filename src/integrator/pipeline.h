@@ -8,9 +8,11 @@
 
 namespace alpenglow::integrator {
 
+/// All stages of one thread.
 class Pipeline final : public shading::Sched::RayService {
 public:
-    Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&);
+    /// diagnostics outlive this. building: as MakeEvaluator; else the world is of World::build().
+    Pipeline(std::shared_ptr<const WorldImpl>, Diagnostics&, bool building = false);
     ~Pipeline() override;
     /// Traces camera rays to the end. Results do not depend on which rays share a call. Returns false if `stop` was set; `out` is
     /// then undefined.
@@ -19,11 +21,15 @@ public:
     /// depends on nothing else. Afterwards this pipeline traces photons only. Returns false if `stop` was set; `out` is then
     /// undefined.
     bool emit(const PhotonJob&, uint32_t first, uint32_t count, std::vector<StoredPhoton>& out, const StopFlag* stop);
+    /// Sends these probes through mirrors and glass, and fills `ends`, which has as many. The job's plan is not used. Afterwards
+    /// this pipeline traces photons only. Returns false if `stop` was set; `ends` are then undefined.
+    bool probe(const PhotonJob& job, std::span<const PhotonProbe> probes, std::span<ProbeEnd> ends, const StopFlag* stop);
     // Scheduler callbacks.
     void follow(std::span<const shading::Sched::Task> slice, shading::Sched&) override;
-    bool settle(shading::Sched&) override;
+    bool shadeQueued(shading::Sched&) override;
     void followStrips(shading::Sched&) override;
 
+    /// Of this pipeline; valid as long as it.
     const StageSet& stages() const;
     const WorldImpl& world() const;
     Counters& counters();
@@ -36,6 +42,7 @@ private:
     /// Repeats run() with fewer rays at once until it fits into memory; undo() reverts its counts.
     bool withinRoom(const std::function<bool()>& run, const std::function<void()>& undo);
     bool traceAll(std::span<const CameraRay>, std::span<SampleResult>);
+    PhotonTrace& beginPhotons(const PhotonJob&, const StopFlag*); ///< sets the rules of photons
     bool emitAll(const PhotonJob&, uint32_t first, uint32_t count);
     void beginRay(const CameraRay&, size_t i, shading::PathRay&); ///< the i-th of a call
     const shading::Media* mediaAtStart(const CameraRay&);         ///< Interior volumes around its origin; null: none

@@ -6,15 +6,16 @@
 
 namespace alpenglow::integrator {
 
+/// Parameters of one trace().
 struct RayOptions {
     float bias = -1;           ///< distance of the origin from the point, current space; < 0: by the error bound of the hit
     float maxDistance = 1e38f; ///< "maxdist" and "maxhitdist", current space
     float importance = 1;      ///< factor of PathRay::importance, "weight"; 0: no ray is sent
     int samples = 1;           ///< rays, if all lobes are followed
     shading::Fade fade;        ///< "falloff"
-    bool elsewhere = false;    ///< the ray starts at `from`, so the lobe samples no lights
-    Vec3 from;
-    float base = 0; ///< "samplebase": rays start within this part of the footprint
+    bool ownOrigin = false;    ///< the ray starts at `from`, so the lobe samples no lights
+    Vec3 from;                 ///< camera space
+    float base = 0;            ///< "samplebase": rays start within this part of the footprint
 };
 
 /// Reads what does not depend on the point itself: all but samples, elsewhere and from. f(row): a number of the call's arguments.

@@ -11,7 +11,7 @@ struct RaySegment {
     float length = 0;                               ///< from PathRay::origin; PathRay::maxDistance without a hit
     const ShadePoint* point = nullptr;              ///< the hit; null: none
     int binding = -1;                               ///< of the surface that was hit; -1: none
-    Color left{1};                                  ///< factor that events apply to light of the hit; ignored without a hit
+    Color transmittance{1};                         ///< factor that events apply to light of the hit; ignored without a hit
     bool over = false;                              ///< an event ended the segment: its hit is not shaded and gives it no light
 };
 

@@ -12,6 +12,7 @@ struct BatchContext;
 struct CameraRay;
 struct StageSet;
 
+/// Keeps what rays refer to until all rays of a call are traced.
 class RayStore final : Stage {
 public:
     explicit RayStore(const StageSet&);
@@ -27,12 +28,14 @@ public:
     shading::RaySet raySetOf(const SiteInfo&, const std::function<float(int)>& f, const geometry::Shape* from, RayType& type,
                              int32_t& label);
 
+    /// Defaults where the ray has none.
     const RayExtra& extraOf(const PathRay& r) const { return r.extra < 0 ? noExtra_ : extras_[size_t(r.extra)]; }
     /// The extras of a ray that has some.
     RayExtra& ownExtra(const PathRay& r) { return extras_[size_t(r.extra)]; }
     /// Stores extras for one ray, as PathRay::extra; free them with freeExtra() after its hit is shaded. Returns -1 for default
     /// values.
     int32_t newExtra(const RayExtra&);
+    /// Free the extras of the rays of a batch, or of one ray; drop all.
     void freeExtras(BatchContext&);
     void freeExtra(const PathRay& r) {
         if (r.extra >= 0) freeExtras_.push_back(r.extra);

@@ -6,6 +6,7 @@
 
 namespace alpenglow::integrator {
 
+/// Four-byte words of a ray, and of a task.
 inline constexpr int kRayWords = int(sizeof(PathRay) / 4), kTaskWords = RayBlock::kWords;
 static_assert(sizeof(Sched::Task) == 4 * kTaskWords && sizeof(RayBlock) == kTaskWords * sizeof(Row));
 

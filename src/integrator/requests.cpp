@@ -158,7 +158,7 @@ bool Requests::askOfTrace(const BatchContext& c, const SiteInfo& s, const ShadeP
     // From a point off the surface no light is sampled: emission counts in full.
     if (const Vec3 from = vector(s.rows[0], Vec3()), away = from - p.P;
         !p.surface.displaced && length(away) > geometry::roundingError(p.P) + 4 * p.surface.pError) {
-        l.elsewhere = true;
+        l.ownOrigin = true;
         l.from = from;
     }
     l.lobeOfShader = false;

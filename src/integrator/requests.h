@@ -22,12 +22,13 @@ class SubsurfaceWalks;
 
 /// A lobe of a batch, and the pair that requested it.
 struct AskedLobe {
-    int lobe, record, lane;
+    int lobe, record, lane; ///< index in Requests::lobes; EmitRecord of the pair, and its lane
 };
 
 /// Requests answered by shadow rays: their weights include the throughput of the ray.
 inline bool asksShadows(SiteKind k) { return k == SiteKind::Transmission || k == SiteKind::Occlusion || k == SiteKind::Ambient; }
 
+/// Turns the pairs of kernels into lobes and shadow rays.
 class Requests final : Stage {
 public:
     explicit Requests(const StageSet&);
@@ -42,6 +43,7 @@ public:
                          AccumulatorId);
     /// Radiance of the environment map of a trace() in direction w (unit, current space).
     Color mapTowards(const TraceSite&, const Vec3& w, float spread) const;
+    /// Drops what a call that was interrupted has left.
     void clear();
 
     std::vector<LobeVertex> lobes; ///< requested so far

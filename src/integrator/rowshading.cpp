@@ -46,7 +46,7 @@ bool RowShading::takes(const SurfaceBinding& b) const {
     for (const BoundKernel* k : {&b.surfaceS, &b.surfaceV})
         if (*k && !(vertexLight_.takes(*k) && needsNoPoints(*k))) return false;
     return b.surfaceS && b.areaLight < 0 && !b.moveS && !b.displacementS && !b.atmosphere.shader && b.lightOutputs.empty() &&
-           b.aside.empty() && !b.matte && b.surface && !b.surface->moving;
+           b.inLightOutputs.empty() && !b.matte && b.surface && !b.surface->moving;
 }
 
 bool RowShading::shade(BatchContext& c, Sched& sched) {
@@ -63,7 +63,7 @@ bool RowShading::shade(BatchContext& c, Sched& sched) {
     c.opaque = isOpaque(*c.batch);
     if (!c.opaque) {
         surfaces_.pointsOfRows(c);
-        transparency_.tellClear(c);
+        transparency_.setTransparency(c);
     }
     store_.keepIndirect(c);
     if (!vertexLight_.run(c, sched)) {

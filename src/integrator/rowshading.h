@@ -23,6 +23,7 @@ class SurfacePoints;
 class SurfaceShading;
 class Transparency;
 
+/// Shades groups without a structure for each point.
 class RowShading final : Stage {
 public:
     explicit RowShading(const StageSet&);

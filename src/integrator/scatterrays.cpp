@@ -197,7 +197,7 @@ void ScatterRays::walkBelow(size_t b, BatchContext& c) {
         const LobeVertex* const request = s.requestAt(point);
         v_.next.goes &= ~(1u << i);
         subsurface_.walks.push_back({int(point),
-                                     request ? request->below : int32_t(subsurface_.below.size()),
+                                     request ? request->subsurface : int32_t(subsurface_.media.size()),
                                      {v_.next.weight[0][i], v_.next.weight[1][i], v_.next.weight[2][i]},
                                      c.targets[point],
                                      v_.next.vertex[i],
@@ -205,7 +205,7 @@ void ScatterRays::walkBelow(size_t b, BatchContext& c) {
                                      v_.vertices[b].energyScale[i]});
         const float* const rows = request ? nullptr : s.rows[b] + i;
         if (rows)
-            subsurface_.below.push_back(
+            subsurface_.media.push_back(
                 subsurface_.mediumOf(*s.info, c.points[point], [&](int row) { return rows[size_t(row) * size_t(s.stride)]; }));
     }
 }
@@ -290,7 +290,7 @@ void ScatterRays::keepLobes(size_t b, BatchContext& c) {
         const uint64_t kind = reinterpret_cast<uintptr_t>(&s.raysAt(point));
         r.kind[0][i] = uint32_t(kind), r.kind[1][i] = uint32_t(kind >> 32);
         const bool sampled = s.lightsAt(point) &&
-                             !((v_.next.single | s.lobes[b].elsewhere) >> i & 1); // then emission that it hits is weighted by MIS
+                             !((v_.next.single | s.lobes[b].ownOrigin) >> i & 1); // then emission that it hits is weighted by MIS
         r.pdf[i] = sampled && rules_.lightsAtRequests ? v_.next.pdf[i] * s.lobes[b].chosen[i] : -1;
         r.binding[i] = sampled ? c.bindings[point] : -1;
         if (const uint16_t path = uint16_t(r.path[i])) {

@@ -11,9 +11,11 @@ class Accumulator;
 class MediaStacks;
 class SubsurfaceWalks;
 
+/// Makes the next rays of paths.
 class ScatterRays final : VertexStage {
 public:
     ScatterRays(const StageSet&, const VertexStages&);
+    /// For all blocks of the batch; the rays go to the scheduler.
     void run(BatchContext&, Sched&);
     /// For the lobes that VertexBlocks::next names in a block: samples their directions and evaluates them there.
     void drawDirections(size_t block);

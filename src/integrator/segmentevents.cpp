@@ -28,8 +28,8 @@ void SegmentEvents::run(BatchContext& c, Sched& sched) {
             continue;
         }
         PathRay& r = c.rays[i];
-        r.weight *= list_[i].left;
-        if (r.extra >= 0) store_.ownExtra(r).whole *= list_[i].left;
+        r.weight *= list_[i].transmittance;
+        if (r.extra >= 0) store_.ownExtra(r).whole *= list_[i].transmittance;
         c.move(i, kept++);
     }
     c.keepFirst(kept);

@@ -16,11 +16,13 @@ class Opacities;
 class RayStore;
 struct StageSet;
 
+/// Traces queued shadow rays.
 class ShadowRays final : Stage {
 public:
     explicit ShadowRays(const StageSet&);
     /// Transmittance along each ray. ShadowRay::ray: random numbers and footprint for shaders on the way.
     void transmittances(std::span<const ShadowRay>, std::span<Color> out);
+    /// Of one ray.
     Color transmittance(const ShadowRay&);
     /// Makes the rays of a transmission() from a to b, for `out`: as many as requested, each with its share of `weight`.
     void transmissionRays(const SiteInfo&, const ShadePoint&, const Vec3& at, const geometry::SurfacePoint*,
@@ -28,6 +30,7 @@ public:
                           uint32_t occurrence, std::vector<ShadowRay>& out);
     /// Traces the queue, adds the light, and empties the queue.
     void flush(Sched&);
+    /// Drops the queue.
     void clear();
     size_t bytes() const; ///< memory of the queue
 
@@ -36,7 +39,7 @@ public:
         if (context_.seen) noted_.push_back({s, queue.size() - 1});
     }
 
-    std::vector<ShadowRay> queue;
+    std::vector<ShadowRay> queue;      ///< rays to be traced
     std::vector<MoreLight> more;       ///< further light along rays of the queue
     std::vector<Contribution> settled; ///< contributions that need no ray, added with the queue
 

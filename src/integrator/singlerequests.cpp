@@ -15,7 +15,7 @@ namespace alpenglow::integrator {
 
 /// Whether requests can share a site: what a site holds once is the same.
 static bool shareSite(const BlockLobes& s, const LobeVertex& l) {
-    return s.number == int(l.site) && s.kind == l.kind && s.lighting == l.lobeOfShader && s.walks == (l.below >= 0) &&
+    return s.number == int(l.site) && s.kind == l.kind && s.lighting == l.lobeOfShader && s.walks == (l.subsurface >= 0) &&
            s.diffuse == (l.rays->type == RayType::Diffuse);
 }
 
@@ -83,7 +83,7 @@ size_t SingleRequests::siteOf(const LobeVertex& l, size_t next, const BatchConte
     s.lighting = l.lobeOfShader;
     s.lights = false;
     s.diffuse = l.rays->type == RayType::Diffuse;
-    s.walks = l.below >= 0;
+    s.walks = l.subsurface >= 0;
     s.requests.assign(v_.blocks * kBlock, nullptr);
     return next;
 }
@@ -95,7 +95,7 @@ void SingleRequests::takeRequest(Site& s, const LobeVertex& l) {
     for (int q = 0; q < 3; ++q) b.weight[q][i] = l.weight[q];
     for (int r = 0; r < kLobeRows; ++r) b.lobe[r][i] = requests_.rows.row(l.place, r);
     b.asked |= 1u << i;
-    b.elsewhere |= Lanes(l.elsewhere) << i;
+    b.ownOrigin |= Lanes(l.ownOrigin) << i;
     s.lights |= l.lights;
     const shading::RaySet& set = l.rays->set;
     s.sets |= l.trace && (set.only || set.sides != accel::Sides::Front || set.mode != shading::HitMode::Default);
@@ -108,7 +108,7 @@ void SingleRequests::takeRequest(Site& s, const LobeVertex& l) {
 
 void SingleRequests::readOptions(Site& s) {
     const bool some = !rules_.pickOne || v_.moved || std::any_of(s.requests.begin(), s.requests.end(), [](const LobeVertex* l) {
-        return l && (l->samples != 1 || l->bias >= 0 || l->base > 0 || l->elsewhere || l->importance != 1 ||
+        return l && (l->samples != 1 || l->bias >= 0 || l->base > 0 || l->ownOrigin || l->importance != 1 ||
                      l->maxDistance < 1e38f || l->fade.fades());
     });
     if (!some) return;
@@ -116,7 +116,7 @@ void SingleRequests::readOptions(Site& s) {
     for (const LobeVertex* l : s.requests)
         if (l)
             s.options[size_t(l->point)] = {l->bias, l->maxDistance, l->importance, l->samples,
-                                           l->fade, l->elsewhere,   l->from,       l->base};
+                                           l->fade, l->ownOrigin,   l->from,       l->base};
 }
 
 void SingleRequests::examine(size_t b, BatchContext& c) {
@@ -139,8 +139,8 @@ void SingleRequests::examine(size_t b, BatchContext& c) {
         ray.origin = v_.originOf(s, point, w);
         ray.direction = w;
         ray.maxDistance = l->maxDistance;
-        ray.bringsEmission = l->lights && (l->elsewhere || (v_.next.single >> i & 1));
-        ray.lit = l->elsewhere ? l->from : c.points[point].P;
+        ray.bringsEmission = l->lights && (l->ownOrigin || (v_.next.single >> i & 1));
+        ray.lit = l->ownOrigin ? l->from : c.points[point].P;
         ray.litSurface = v_.litSurfaceAt(point);
         const float spread = c.rays[point].footprint.spread;
         const Color environment = l->trace->map ? l->tint * requests_.mapTowards(*l->trace, w, spread) : Color(0);
@@ -161,7 +161,7 @@ bool SingleRequests::intersectsEmitter(const LobeVertex& l, size_t point, const 
     if (!l.lights) return false;
     const VertexBlock& v = v_.vertices[point / kBlock];
     const size_t i = point % kBlock;
-    const Vec3 from = l.elsewhere ? l.from : Vec3(v.P[0][i], v.P[1][i], v.P[2][i]);
+    const Vec3 from = l.ownOrigin ? l.from : Vec3(v.P[0][i], v.P[1][i], v.P[2][i]);
     const float error = 1e-3f * (1 + length(from)) + std::fabs(l.bias);
     if (world_.lights().size() > 64) return true; // sending the ray costs less than testing all of them
     return std::any_of(world_.lights().begin(), world_.lights().end(), [&](const BoundLight& light) {

@@ -7,6 +7,7 @@
 
 namespace alpenglow::integrator {
 
+/// Reads requested lobes one by one.
 class SingleRequests final : VertexStage {
 public:
     SingleRequests(const StageSet&, const VertexStages&);

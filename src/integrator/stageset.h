@@ -43,7 +43,9 @@ class SurfaceShading;
 class Transparency;
 class WaitingKernels;
 
+/// References to the stages of one pipeline, which owns them.
 struct StageSet {
+    /// Each is described in the header of its class.
     Context& context;
     RayStore& store;
     LightPathStates& paths;

@@ -11,15 +11,16 @@ void putResult(const SiteInfo&, const shading::TargetValue&, const TraceSums* su
 
 /// The pending request of a strip.
 struct StripRequest {
-    int site = 0, first = 0, lanes = 0; ///< of the kernel; first point of the strip; lanes of the rows
-    bool gather = false;                ///< rays of a gather(), which have been intersected already
-    const StripMemory* memory = nullptr;
-    const uint32_t* asked = nullptr; ///< by lane: rays requested before
+    int site = 0, first = 0, lanes = 0;  ///< of the kernel; first point of the strip; lanes of the rows
+    bool gather = false;                 ///< rays of a gather(), which have been intersected already
+    const StripMemory* memory = nullptr; ///< arguments and results; null: there is no request
+    const uint32_t* asked = nullptr;     ///< by lane: rays requested before
 };
 
 /// A suspended strip. Its request is processed together with those of other strips of its batch (WaitingKernels::follow).
 class KernelStrip final : public Sched::Strip {
 public:
+    /// handle: of the suspended coroutine; first: point of the batch.
     KernelStrip(WaitingKernels&, std::shared_ptr<BatchContext>, void* handle, int first, int depth);
     ~KernelStrip() override;
     int depth() const override { return depth_; }
@@ -28,6 +29,7 @@ public:
     bool resume(Sched&, std::span<const shading::TargetValue> results) override;
     /// After start or resume: either ends (returns true), or registers its request with the stage and waits.
     bool advance(Sched&, std::unique_ptr<Sched::Strip> self);
+    /// The batch.
     const std::shared_ptr<BatchContext>& context() const { return c_; }
     /// Makes its request: lobes and shadow rays. Keeps its targets held.
     void ask(Sched&);
@@ -36,6 +38,7 @@ public:
     /// The pending request, for a caller that makes it in place of ask(); noteAsked() then records that. lobes: lanes that send
     /// rays, one each.
     StripRequest request() const { return {site_, first_, lanes_, gather_ != nullptr, &m_, asked_.data()}; }
+    /// Counts rays that lobes of the strip request.
     void noteAsked(uint64_t lobes);
 
 private:

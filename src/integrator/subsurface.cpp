@@ -23,8 +23,8 @@
 
 namespace alpenglow::integrator {
 
-Walks::Walks(const StageSet& s, BatchContext& c, std::span<const WalkAsked> asked, std::span<const SubsurfaceMedium> below)
-    : Stage(s.context), c_(c), asked_(asked), below_(below), accumulator_(s.accumulator), batches_(s.batches),
+Walks::Walks(const StageSet& s, BatchContext& c, std::span<const WalkAsked> asked, std::span<const SubsurfaceMedium> media)
+    : Stage(s.context), c_(c), asked_(asked), media_(media), accumulator_(s.accumulator), batches_(s.batches),
       displacement_(s.displacement), intersector_(s.intersector), inputs_(s.inputs), lightKernels_(s.lightKernels),
       litSurfaces_(s.litSurfaces), photons_(s.photons), store_(s.store), requests_(s.requests), shadows_(s.shadows),
       subsurface_(s.subsurface), vertexLight_(s.vertexLight) {}
@@ -49,7 +49,7 @@ bool Walks::belongs(uint32_t shape, int group) const {
 
 void Walks::run(Sched& sched) {
     for (size_t i = 0; i < asked_.size(); ++i)
-        if (below_[size_t(asked_[i].below)].model == SubsurfaceSite::Model::Walk) start(int(i));
+        if (media_[size_t(asked_[i].subsurface)].model == SubsurfaceSite::Model::Walk) start(int(i));
         else probe(int(i));
     while (!walkers_.empty() && !(context_.stop && *context_.stop)) step();
     askSurfaces(sched);
@@ -65,11 +65,11 @@ void Walks::run(Sched& sched) {
 /// inside stays.
 std::optional<Walks::Entry> Walks::entry(int asked) const {
     const WalkAsked& a = asked_[size_t(asked)];
-    const SubsurfaceMedium& b = below_[size_t(a.below)];
+    const SubsurfaceMedium& b = media_[size_t(a.subsurface)];
     const ShadePoint& p = c_.points[size_t(a.point)];
     const bool turned = dot(p.surface.n, c_.rays[size_t(a.point)].dir) > 0;
     const Vec3 side = turned ? -p.surface.n : p.surface.n;
-    if (!b.elsewhere) {
+    if (!b.ownOrigin) {
         const float cosine = dot(b.normal, side); // a normal reversed by rounding has no effect
         return Entry{b.normal == Vec3() || std::fabs(cosine) > 1 - 1e-6f ? side
                      : cosine < 0                                        ? -b.normal
@@ -104,7 +104,7 @@ std::optional<Walks::Entry> Walks::entry(int asked) const {
 /// Starts a walk: samples a direction of uniform light refracted into the surface.
 void Walks::start(int asked) {
     const WalkAsked& a = asked_[size_t(asked)];
-    const SubsurfaceMedium& b = below_[size_t(a.below)];
+    const SubsurfaceMedium& b = media_[size_t(a.subsurface)];
     const ShadePoint& p = c_.points[size_t(a.point)];
     const PathRay& ray = c_.rays[size_t(a.point)];
     const std::optional<Entry> entered = entry(asked);
@@ -124,14 +124,14 @@ void Walks::start(int asked) {
     if (const auto& on = entered->surface) {
         const Vec3 side = dot(on->n, entered->out) < 0 ? -on->n : on->n;
         if (const float away = dot(w.dir, side); away > 0) w.dir -= side * (2 * away); // a tilted normal: enters all the same
-        w.at = geometry::offsetOrigin(*on, w.dir, b.elsewhere ? 0 : length(p.P - p.surface.P));
+        w.at = geometry::offsetOrigin(*on, w.dir, b.ownOrigin ? 0 : length(p.P - p.surface.P));
     }
     walkers_.push_back(w);
 }
 
 /// Samples the distance to the next scattering by one channel of the walker's weight.
 double Walks::distance(const Walker& w) const {
-    const SubsurfaceMedium& b = below_[size_t(asked_[size_t(w.asked)].below)];
+    const SubsurfaceMedium& b = media_[size_t(asked_[size_t(w.asked)].subsurface)];
     const Vec2 u = store_.random(c_.rays[size_t(asked_[size_t(w.asked)].point)]).pair(w.vertex, kSegmentEvent, 1);
     const Color part = absolute(w.weight);
     double at = double(u.x) * (double(part.x) + part.y + part.z);
@@ -146,7 +146,7 @@ double Walks::distance(const Walker& w) const {
 
 /// Updates a walker's weight after a distance: transmittance over the density of all channels.
 void Walks::weigh(Walker& w, double way, bool scatters) const {
-    const SubsurfaceMedium& b = below_[size_t(asked_[size_t(w.asked)].below)];
+    const SubsurfaceMedium& b = media_[size_t(asked_[size_t(w.asked)].subsurface)];
     const Color part = absolute(w.weight);
     const double sum = double(part.x) + part.y + part.z;
     double left[3], density = 0;
@@ -184,7 +184,7 @@ void Walks::step() {
     going_.clear();
     for (size_t i = 0; i < walkers_.size(); ++i) {
         Walker& w = walkers_[i];
-        const int group = below_[size_t(asked_[size_t(w.asked)].below)].group;
+        const int group = media_[size_t(asked_[size_t(w.asked)].subsurface)].group;
         for (int k = 0; hits[i].valid() && !belongs(hits[i].shape, group); ++k) { // skips unrelated geometry
             world.goOn(rays[i], hits[i]);
             if (k >= limits::kShadowLayers || !intersector_.intersect(rays[i], hits[i])) hits[i] = {};
@@ -199,7 +199,7 @@ void Walks::step() {
 
 bool Walks::scatter(Walker& w, double way) {
     if (!(way < 1e30)) return false; // leaves an interior without a boundary
-    const SubsurfaceMedium& b = below_[size_t(asked_[size_t(w.asked)].below)];
+    const SubsurfaceMedium& b = media_[size_t(asked_[size_t(w.asked)].subsurface)];
     weigh(w, way, true);
     const Color left = absolute(w.weight), begin = absolute(w.begin);
     if (!(maxComponent(left) > 0) || !isFinite(left)) return false;
@@ -219,7 +219,7 @@ bool Walks::scatter(Walker& w, double way) {
 bool Walks::intersect(Walker& w, const accel::Hit& hit, double) {
     const WorldImpl& world = world_;
     const WalkAsked& a = asked_[size_t(w.asked)];
-    const SubsurfaceMedium& b = below_[size_t(a.below)];
+    const SubsurfaceMedium& b = media_[size_t(a.subsurface)];
     geometry::SurfacePoint at = world.accel().point(hit);
     const Vec3 n = at.displaced ? at.displacedN : at.n;
     weigh(w, hit.distance, false);
@@ -249,7 +249,7 @@ bool Walks::intersect(Walker& w, const accel::Hit& hit, double) {
     return false;
 }
 
-void Walks::settleAt(BatchContext& c, std::span<const Exit> exits) {
+void Walks::enterAt(BatchContext& c, std::span<const Exit> exits) {
     const WorldImpl& world = world_;
     for (const Exit& x : exits) {
         const WalkAsked& a = asked_[size_t(x.asked)];
@@ -294,8 +294,8 @@ void Walks::gatherAt(std::span<const Exit> exits, Sched& sched) {
     auto c = batches_.take();
     c->bound = c_.bound;
     c->binding = &world_.bindings()[size_t(world_.bindingOf()[exits[0].shape])];
-    c->below = true;
-    settleAt(*c, exits);
+    c->subsurface = true;
+    enterAt(*c, exits);
     std::vector<float> indirect;
     for (const Exit& x : exits) indirect.push_back(asked_[size_t(x.asked)].indirect);
     vertexLight_.runExits(*c, indirect, sched);

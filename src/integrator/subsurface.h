@@ -20,7 +20,9 @@ class ShadowRays;
 /// The walks that a batch has requested, and their exits: points that gather light as diffuse() does.
 class Walks final : Stage {
 public:
+    /// The batch and both lists outlive this.
     Walks(const StageSet&, BatchContext&, std::span<const WalkAsked>, std::span<const SubsurfaceMedium>);
+    /// Follows all walks to their exits and lights these.
     void run(Sched&);
 
 private:
@@ -53,7 +55,7 @@ private:
     void weigh(Walker&, double way, bool scatters) const;
     double distance(const Walker&) const;
     /// Turns the exits into points of a batch that gathers irradiance.
-    void settleAt(BatchContext&, std::span<const Exit>);
+    void enterAt(BatchContext&, std::span<const Exit>);
     void gatherAt(std::span<const Exit>, Sched&);
     /// Handles exits on surfaces whose shaders return the entering light themselves.
     void askSurfaces(Sched&);
@@ -67,7 +69,7 @@ private:
 
     BatchContext& c_;
     std::span<const WalkAsked> asked_;
-    std::span<const SubsurfaceMedium> below_;
+    std::span<const SubsurfaceMedium> media_;
     std::vector<Walker> walkers_, going_;
     std::vector<Exit> exits_;
 

@@ -35,8 +35,8 @@ void SubsurfaceWalks::request(BatchContext& c, const SiteInfo& s, const ShadePoi
     l.samples = occlusion_.samplesOf(std::max(1.f, samples), p.shape, s, c); // not a number: 1
     l.rays = &kSpecularKind; // of a single walk: with --no-indirect the light of lights still counts
     l.lights = false;
-    l.below = int32_t(below.size());
-    below.push_back(mediumOf(s, p, f));
+    l.subsurface = int32_t(media.size());
+    media.push_back(mediumOf(s, p, f));
 }
 
 SubsurfaceMedium SubsurfaceWalks::mediumOf(const SiteInfo& s, const ShadePoint& p, const std::function<float(int)>& f) {
@@ -50,19 +50,19 @@ SubsurfaceMedium SubsurfaceWalks::mediumOf(const SiteInfo& s, const ShadePoint& 
     // For a displaced surface, the facet and the shader's point may differ by a micropolygon.
     const float apart = p.surface.displaced ? length(p.surface.dPdu) * p.du + length(p.surface.dPdv) * p.dv : 0;
     const float away = length(b.from - p.P);
-    b.elsewhere = std::isfinite(away) && away > geometry::roundingError(p.P) + 4 * p.surface.pError + apart;
+    b.ownOrigin = std::isfinite(away) && away > geometry::roundingError(p.P) + 4 * p.surface.pError + apart;
     return b;
 }
 
 void SubsurfaceWalks::walk(BatchContext& c, Sched& sched) {
-    const std::vector<SubsurfaceMedium> ofLobes = std::exchange(below, {});
+    const std::vector<SubsurfaceMedium> ofLobes = std::exchange(media, {});
     const std::vector<WalkAsked> asked = std::exchange(walks, {});
     if (!asked.empty()) Walks(set_, c, asked, ofLobes).run(sched);
 }
 
 void SubsurfaceWalks::clear() {
     walks.clear();
-    below.clear();
+    media.clear();
 }
 
 } // namespace alpenglow::integrator

@@ -11,6 +11,7 @@ namespace alpenglow::integrator {
 class OcclusionCalls;
 struct StageSet;
 
+/// Collects subsurface walks.
 class SubsurfaceWalks final : Stage {
 public:
     explicit SubsurfaceWalks(const StageSet&);
@@ -20,6 +21,7 @@ public:
     void request(BatchContext&, const SiteInfo&, const ShadePoint&, const std::function<float(int)>& row, LobeVertex&);
     /// Follows the walks that a batch has requested.
     void walk(BatchContext&, Sched&);
+    /// Drops the walks that are requested.
     void clear();
     /// Attribute "subsurface" of a shape. Shapes of the same group bound one inside: shapes that give the same name, or share
     /// attributes.
@@ -27,11 +29,12 @@ public:
         using SubsurfaceValues::SubsurfaceValues;
         int group = 0;
     };
+    /// Computed at first use.
     const OfShape& ofShape(const scene::Attributes&);
 
-    std::vector<SubsurfaceMedium> below; ///< for Requests::lobes
+    std::vector<SubsurfaceMedium> media; ///< for Requests::lobes
     std::vector<WalkAsked> walks;        ///< requested by the lobes of a batch; removed when these are done
-    AlbedoInversions albedoInversions;
+    AlbedoInversions albedoInversions;   ///< of this thread
 
 private:
     int groupNamed(const std::string&);

@@ -9,6 +9,7 @@ namespace alpenglow::integrator {
 class RayStore;
 struct StageSet;
 
+/// Computes the surface interactions of hits.
 class SurfacePoints final : Stage {
 public:
     explicit SurfacePoints(const StageSet&);

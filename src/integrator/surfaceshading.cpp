@@ -33,7 +33,7 @@ SurfaceShading::SurfaceShading(const StageSet& s)
       shadows_(s.shadows), transparency_(s.transparency), vertexLight_(s.vertexLight), waitingKernels_(s.waitingKernels) {}
 
 /// Writes results other than light to the call whose ray hit the point.
-void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacity, Sched& sched) {
+void SurfaceShading::answerCall(const BatchContext& c, int i, const Color& opacity, Sched& sched) {
     const PathRay& ray = c.rays[size_t(i)];
     const AccumulatorId target = c.targets[size_t(i)];
     if (ray.first) {
@@ -42,7 +42,7 @@ void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacit
     }
     if (!gathers_.gathered.empty())
         if (const auto asks = gathers_.gathered.find(target); asks != gathers_.gathered.end())
-            gathers_.tellGather(c, i, *asks->second);
+            gathers_.answerGather(c, i, *asks->second);
     const RayExtra& extra = store_.extraOf(ray);
     if (extra.fade.fades() && maxComponent(extra.environment) > 0) { // the sky shows through partial blocking
         const Color light = extra.whole * extra.environment * opacity * (1 - extra.kept);
@@ -57,7 +57,7 @@ void SurfaceShading::tellAsker(const BatchContext& c, int i, const Color& opacit
 }
 
 void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched, std::span<const uint32_t> asked) {
-    if (c.aside) return lightOutputs_.finishLightOutputs(c, first, lanes, sched);
+    if (c.lightOutput) return lightOutputs_.finishLightOutputs(c, first, lanes, sched);
     shading::Batch& b = *c.batch;
     int ci = b.plan().Ci, oi = b.plan().Oi;
     cameraOutputs_.begin(c);
@@ -72,7 +72,7 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
             sched.setDistance(c.targets[i], 0);
             color = Color(0);
         }
-        tellAsker(c, i, opacity, sched);
+        answerCall(c, i, opacity, sched);
         Color shown = color;
         if (!c.atmosphereEffects.empty() && c.atmosphereEffects[size_t(i)].on &&
             !(binding.matte && ray.camera())) { // shade() has scaled the pairs
@@ -98,16 +98,19 @@ void SurfaceShading::finish(BatchContext& c, int first, int lanes, Sched& sched,
         const float chance = c.passes.empty() ? 1 : c.passes[size_t(i)];
         const Color clear = chance > 0 && !c.opaque ? transparency_.goesOn(c, i) : Color(0);
         if (ray.counts && ray.sample->grid) accumulator_.results[size_t(ray.sample->path)]->behind = clear;
-        else if (maxComponent(clear) > 0)
+        else if (maxComponent(clear) > 0) {
+            if (PhotonTrace* const t = photons_.photonTrace(); t && !t->probes.empty())
+                t->ends[size_t(ray.sample->path)].chance *= chance;
             transparency_.continueBehind(binding, ray, c.targets[i], c.points[i], clear, chance,
                                          asked.empty() ? 0 : asked[size_t(i - first)], sched);
+        }
     }
 }
 
 bool SurfaceShading::vanish(BatchContext& c, Sched& sched) {
     const auto nothing = [&](int b) {
         const SurfaceBinding& s = world_.bindings()[size_t(b)];
-        return s.vanishes && s.lightOutputs.empty() && s.aside.empty();
+        return s.vanishes && s.lightOutputs.empty() && s.inLightOutputs.empty();
     };
     if (!std::all_of(c.bindings.begin(), c.bindings.end(), nothing) || photons_.photonTrace() || !gathers_.gathered.empty() ||
         !accumulator_.traceSums.empty())
@@ -115,8 +118,8 @@ bool SurfaceShading::vanish(BatchContext& c, Sched& sched) {
     const bool outputs = world_.settings().firstSeen || !world_.wanted().empty();
     for (const PathRay& r : c.rays) {
         const bool reported = (r.first && !(r.counts && sched.plain())) || (r.counts && (outputs || r.sample->grid));
-        const bool hazy = r.medium() >= 0 && !world_.media()[size_t(r.medium())].homogeneous;
-        if (reported || hazy || store_.extraOf(r).fade.fades()) return false;
+        const bool inAtmosphere = r.medium() >= 0 && !world_.media()[size_t(r.medium())].homogeneous;
+        if (reported || inAtmosphere || store_.extraOf(r).fade.fades()) return false;
     }
     for (size_t i = 0; i < c.rays.size(); ++i) {
         const PathRay& r = c.rays[i];
@@ -133,9 +136,9 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
     if (photons_.photonTrace()) atmosphere_.atmosphereOfPhotons(*c);
     if (photons_.photonTrace() && kernel.facts().suspends) return photons_.photonsByModel(*c, sched);
     inputs_.fill(*c);
-    if (c->displaced) c->batch->tell(*c->displaced->batch);
+    if (c->displaced) c->batch->takeDisplacement(*c->displaced->batch);
     gathers_.takeSent(*c->batch, c->targets, rsl::PairName::To::Surface);
-    auto aside = lightOutputs_.lightOutputBatches(*c, sched);
+    auto outputBatches = lightOutputs_.lightOutputBatches(*c, sched);
     if (c->binding->moveS) displacement_.moveToFacets(*c); // the kernel moves P itself: it starts with the undisplaced surface
     const int n = int(c->points.size());
     counters_.points += uint64_t(n);
@@ -145,7 +148,7 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
 
     if (kernel.facts().suspends) {
         waitingKernels_.start(c, sched);
-        lightOutputs_.followLightOutputs(lightOutputs_.shareLight(*c, {}, aside, sched), aside, sched);
+        lightOutputs_.followLightOutputs(lightOutputs_.shareLight(*c, {}, outputBatches, sched), outputBatches, sched);
         return;
     }
     kernel.run(&c->batch->call());
@@ -153,16 +156,17 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
 
     // Atmospheres scale the requests of the kernel.
     const bool media = !world_.media().empty();
-    const bool hazy = !photons_.photonTrace() && (media || std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) {
-                                                      return world_.bindings()[size_t(b)].atmosphere.shader != nullptr;
-                                                  }));
-    if (hazy) {
+    const bool inAtmosphere =
+        !photons_.photonTrace() && (media || std::any_of(c->bindings.begin(), c->bindings.end(), [&](int b) {
+                                        return world_.bindings()[size_t(b)].atmosphere.shader != nullptr;
+                                    }));
+    if (inAtmosphere) {
         atmosphere_.atmosphereOfBatch(*c, 0, n, media || !c->emits.empty() || paths_.automaton);
         atmosphere_.scaleRequests(*c);
     }
-    if (aside.empty() && vertexLight_.takes(*c)) {
+    if (outputBatches.empty() && vertexLight_.takes(*c)) {
         c->opaque = !photons_.photonTrace() && isOpaque(*c->batch); // those see the opacity of their shading models
-        if (!c->opaque && rules_.pickOne) transparency_.tellClear(*c);
+        if (!c->opaque && rules_.pickOne) transparency_.setTransparency(*c);
         if (vertexLight_.run(*c, sched)) {
             counters_.inRows += uint64_t(n);
             requests_.requestPairs(*c, nullptr, sched, false);
@@ -172,13 +176,13 @@ void SurfaceShading::shade(const std::shared_ptr<BatchContext>& c, Sched& sched)
         }
     }
     std::vector<AskedLobe> asked; // only if outputs share lobes
-    requests_.requestPairs(*c, aside.empty() ? nullptr : &asked, sched);
-    if (world_.settings().hider == Hider::Path) transparency_.tellClear(*c);
-    const auto rest = lightOutputs_.shareLight(*c, asked, aside, sched);
+    requests_.requestPairs(*c, outputBatches.empty() ? nullptr : &asked, sched);
+    if (world_.settings().hider == Hider::Path) transparency_.setTransparency(*c);
+    const auto rest = lightOutputs_.shareLight(*c, asked, outputBatches, sched);
     vertexLight_.gather(*c, sched);
     shadows_.flush(sched);
     finish(*c, 0, n, sched);
-    lightOutputs_.followLightOutputs(rest, aside, sched);
+    lightOutputs_.followLightOutputs(rest, outputBatches, sched);
 }
 
 } // namespace alpenglow::integrator

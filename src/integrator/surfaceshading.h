@@ -24,6 +24,7 @@ struct StageSet;
 class Transparency;
 class WaitingKernels;
 
+/// Runs surface kernels.
 class SurfaceShading final : Stage {
 public:
     explicit SurfaceShading(const StageSet&);
@@ -35,7 +36,7 @@ public:
     /// Completes points whose kernel has run. `asked`: by lane, rays that a waiting kernel has requested.
     void finish(BatchContext&, int first, int lanes, Sched&, std::span<const uint32_t> asked = {});
     /// Writes results other than light (distance, normal, outputs) to the call whose ray hit the point.
-    void tellAsker(const BatchContext&, int point, const Color& opacity, Sched&);
+    void answerCall(const BatchContext&, int point, const Color& opacity, Sched&);
 
 private:
     Accumulator& accumulator_;

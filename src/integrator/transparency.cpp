@@ -45,7 +45,7 @@ Color Transparency::clearAt(const BatchContext& c, int i) const {
 }
 
 /// Sets the transparency at each point, for the choice of the continuation.
-void Transparency::tellClear(BatchContext& c) {
+void Transparency::setTransparency(BatchContext& c) {
     c.clear.resize(c.points.size());
     for (size_t i = 0; i < c.points.size(); ++i) c.clear[i] = clearAt(c, int(i));
     c.passes.assign(c.points.size(), 1.f);
@@ -97,12 +97,12 @@ void Transparency::continueBehind(const SurfaceBinding& b, const PathRay& ray, A
     guide_.continueBehind(r, int(&b - world_.bindings().data()));
     r.path = paths_.next(ray.path, paths_.straight);
     r.media = media_.beyond(b, ray.media, p.surface.n, ray.dir, ray.dir);
-    media_.tellLost(r.media, p);
+    media_.reportLost(r.media, p);
     if (photons_.photonTrace() && (ray.medium() >= 0 || r.medium() >= 0)) { // from here on in another volume
         r.lobeBinding = int(&b - world_.bindings().data());
         r.lobeOrigin = p.P;
     }
-    r.parted |= ray.medium() >= 0 || r.medium() >= 0;
+    r.crossedMedium |= ray.medium() >= 0 || r.medium() >= 0;
     r.vertex = childVertex(ray.vertex, 0xfffff, 0);
     ++r.layers;
     if (r.layers > limits::kPathDepth / 32 || !(r.maxDistance > 0)) {

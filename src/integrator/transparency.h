@@ -15,11 +15,12 @@ struct StageSet;
 /// Whether all points of a batch that has run are opaque.
 bool isOpaque(const shading::Batch&);
 
+/// Continues rays behind transparent surfaces.
 class Transparency final : Stage {
 public:
     explicit Transparency(const StageSet&);
     /// Sets BatchContext::clear and passes from the transparency at each point, for choosing between lobes and continuation.
-    void tellClear(BatchContext&);
+    void setTransparency(BatchContext&);
     /// Transparency of a shaded point, including the volume before it.
     Color clearAt(const BatchContext&, int point) const;
     /// Weight of a continuing ray: clearAt(); larger for photons at one-sided surfaces.

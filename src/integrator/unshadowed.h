@@ -16,12 +16,13 @@ struct UnshadowedRay {
     int point = 0;                 ///< index in the batch
     const RayKind* rays = nullptr; ///< never null
     Vec3 origin, direction;        ///< unit direction
-    float maxDistance = 1e38f;
-    bool bringsEmission = false; ///< its call samples lights, but not for this ray: a delta lobe, or a ray from elsewhere
-    Vec3 lit;                    ///< the point that the lights see
-    int litSurface = -1;         ///< index in LitSurfaces::values
+    float maxDistance = 1e38f;     ///< of the call
+    bool bringsEmission = false;   ///< its call samples lights, but not for this ray: a delta lobe, or a ray from elsewhere
+    Vec3 lit;                      ///< the point that the lights see
+    int litSurface = -1;           ///< index in LitSurfaces::values
 };
 
+/// Light that ignores occlusion, for trace().
 class UnshadowedLight final : Stage {
 public:
     explicit UnshadowedLight(const StageSet&);

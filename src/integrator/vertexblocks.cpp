@@ -54,9 +54,9 @@ Vec3 VertexBlocks::originOf(const Site& s, size_t point, const Vec3& w) const {
     const Vec3 P(v.P[0][i], v.P[1][i], v.P[2][i]), n(v.n[0][i], v.n[1][i], v.n[2][i]);
     if (!s.options.empty()) {
         const RayOptions& o = s.options[point];
-        const Vec3 at = o.elsewhere ? o.from : P;
+        const Vec3 at = o.ownOrigin ? o.from : P;
         if (o.bias >= 0) return at + w * o.bias;
-        if (o.elsewhere) return at + w * geometry::roundingError(at);
+        if (o.ownOrigin) return at + w * geometry::roundingError(at);
     }
     if (moved) return surfaces_.leave(*moved, point, w);
     return v.bias[i] > 0 ? P + w * v.bias[i] : geometry::offsetOrigin(P, n, v.error[i], w);

@@ -14,6 +14,7 @@ namespace alpenglow::integrator {
 class LightPathStates;
 class SurfacePoints;
 
+/// Columns of one batch, shared by the stages over vertices.
 struct VertexBlocks final : Stage {
     using Site = BlockLobes; ///< a call site of the kernel
     explicit VertexBlocks(const StageSet&);
@@ -48,17 +49,18 @@ struct VertexBlocks final : Stage {
     /// Index of a point in LitSurfaces::values; -1: none.
     int litSurfaceAt(size_t point) const { return litSurface.empty() ? -1 : litSurface[point]; }
     size_t bytes() const; ///< memory that the columns hold
+    /// Index in WorldImpl::lights().
     uint32_t numberOf(const BoundLight& l) const { return uint32_t(&l - world_.lights().data()); }
 
     // By VertexLoading and the stages that read requests.
-    const BatchContext* moved = nullptr;      ///< the batch, if its shader has moved points
-    size_t blocks = 0, points = 0, count = 0; ///< count: requesting sites in `sites`
-    bool waits = false;                       ///< the kernel waits for its results
-    bool single = false;                      ///< requests were made one by one (singlerequests.h)
-    std::vector<uint32_t> before;             ///< if it waits, by point: earlier ray requests
-    std::span<const float> indirect;          ///< at exits of walks, by point: factor of the light of rays
-    std::vector<Lanes> apart;                 ///< by block: points of indirectdiffuse(); empty: none
-    std::vector<VertexBlock> vertices;
+    const BatchContext* moved = nullptr;        ///< the batch, if its shader has moved points
+    size_t blocks = 0, points = 0, count = 0;   ///< count: requesting sites in `sites`
+    bool waits = false;                         ///< the kernel waits for its results
+    bool single = false;                        ///< requests were made one by one (singlerequests.h)
+    std::vector<uint32_t> before;               ///< if it waits, by point: earlier ray requests
+    std::span<const float> indirect;            ///< at exits of walks, by point: factor of the light of rays
+    std::vector<Lanes> apart;                   ///< by block: points of indirectdiffuse(); empty: none
+    std::vector<VertexBlock> vertices;          ///< by block
     std::vector<RayBlock> rays;                 ///< incoming rays, then the next rays
     std::vector<Site> sites;                    ///< the first `count`, in the order of the calls
     std::map<int, std::vector<uint32_t>> loops; ///< by call site that is called several times at a point: calls so far
@@ -66,19 +68,20 @@ struct VertexBlocks final : Stage {
     bool sendsSeveral = false;                  ///< the kernel waits for several rays of a call
     uint64_t ignored = 0;                       ///< rays that are not sent because their "weight" is 0
     // By LightSampling, for one light.
-    std::vector<Lanes> lit;      ///< by block: points that sample it
-    int onlySite = -1;           ///< the only site that samples it; -1: all
-    uint32_t draw = 0;           ///< which sample, if lobes take several
-    bool several = false;        ///< some lobe takes several samples of each light
-    bool checksHits = false;     ///< lobes differ in the samples that their rays could hit
-    std::vector<int> litSurface; ///< litSurfaceAt(); empty: no light queries surfaces
-    std::vector<LightBlock> lights;
-    std::vector<ShadePoint> queries;
-    std::vector<BlockQuery> asked;  ///< by query
-    std::vector<LightValue> values; ///< by query
-    std::vector<int32_t> queryAt;   ///< by point: index in `values`; -1, or empty: `lights` holds all
-    std::vector<size_t> litBlocks;  ///< blocks with points that sample it
-    std::vector<NumberBlock> pairs, choices;
+    std::vector<Lanes> lit;                  ///< by block: points that sample it
+    int onlySite = -1;                       ///< the only site that samples it; -1: all
+    uint32_t draw = 0;                       ///< which sample, if lobes take several
+    bool several = false;                    ///< some lobe takes several samples of each light
+    bool mirrored = false;                   ///< the light comes by mirrors: for light path outputs
+    bool checksHits = false;                 ///< lobes differ in the samples that their rays could hit
+    std::vector<int> litSurface;             ///< litSurfaceAt(); empty: no light queries surfaces
+    std::vector<LightBlock> lights;          ///< by block: samples of the light
+    std::vector<ShadePoint> queries;         ///< points as the light's kernel takes them
+    std::vector<BlockQuery> asked;           ///< by query
+    std::vector<LightValue> values;          ///< by query
+    std::vector<int32_t> queryAt;            ///< by point: index in `values`; -1, or empty: `lights` holds all
+    std::vector<size_t> litBlocks;           ///< blocks with points that sample it
+    std::vector<NumberBlock> pairs, choices; ///< by block: random numbers of light samples
     // By Connection.
     ShadowBlock shadow{};
     int32_t sent[kBlock]; ///< shadow rays of a block, in ShadowRays::queue; -1: not yet sent
@@ -109,11 +112,13 @@ class PhotonFlight;
 class PhotonGather;
 class ScatterRays;
 class SingleRequests;
+class SpecularLights;
 class VertexLoading;
 
 /// The stages over vertices in blocks, by reference. Each takes those that it calls.
 struct VertexStages {
     VertexBlocks& blocks;
+    /// In the order of vertexlight.h.
     VertexLoading& loading;
     LobeRequests& requests;
     SingleRequests& single;

@@ -14,6 +14,7 @@
 #include "integrator/requests.h"
 #include "integrator/scatterrays.h"
 #include "integrator/singlerequests.h"
+#include "integrator/specularlights.h"
 #include "integrator/stageset.h"
 #include "integrator/strips.h"
 #include "integrator/subsurfacewalks.h"
@@ -38,6 +39,7 @@ struct VertexLight::Parts {
     Connection connection;
     LastVertices last;
     GuideScatter guide;
+    SpecularLights specular;
     PhotonGather gather;
     PhotonFlight flight;
     ScatterRays scatter;
@@ -46,7 +48,7 @@ struct VertexLight::Parts {
 VertexLight::Parts::Parts(const StageSet& s)
     : blocks(s), set{blocks, loading, requests, single, selection, lights, connection, last, guide, gather, flight, scatter},
       loading(s, set), requests(s, set), single(s, set), selection(s, set), lights(s, set), connection(s, set), last(s, set),
-      guide(s, set), gather(s, set), flight(s, set), scatter(s, set) {}
+      guide(s, set), specular(s, set), gather(s, set), flight(s, set), scatter(s, set) {}
 
 VertexLight::VertexLight(const StageSet& s)
     : Stage(s.context), parts_(std::make_unique<Parts>(s)), set_(s), ambient_(s.ambient), lastSkies_(s.lastSkies),
@@ -84,7 +86,7 @@ static bool tracesSets(const WorldImpl& w, const BoundKernel& kernel) {
 }
 
 bool VertexLight::takes(const BatchContext& c) const {
-    if (!asksBlocks(c) || c.aside || c.between || c.below || tracesSets(world_, *c.bound)) return false;
+    if (!asksBlocks(c) || c.lightOutput || c.between || c.subsurface || tracesSets(world_, *c.bound)) return false;
     return takesRays(c);
 }
 
@@ -116,7 +118,7 @@ void VertexLight::gather(BatchContext& c, Sched& sched) {
     for (const LobeVertex& l : set_.requests.lobes) targets[size_t(l.point)] = l.target;
     c.targets.swap(targets);
     parts_->single.load(c);
-    if (parts_->flight.on() && !c.between && !c.below) parts_->flight.takeModels(c, false);
+    if (parts_->flight.on() && !c.between && !c.subsurface) parts_->flight.takeModels(c, false);
     followLobes(c, sched);
     c.targets.swap(targets);
 }
@@ -155,7 +157,7 @@ void VertexLight::followLobes(BatchContext& c, Sched& sched) {
     Parts& p = *parts_;
     p.selection.prepare();
     if (p.flight.on()) return p.flight.follow(c, sched);
-    if (world_.lightsAsk()) p.lights.tellLights(c);
+    if (world_.lightsAsk()) p.lights.recordLitSurfaces(c);
     p.gather.mark(c);
     p.selection.select(c);
     counters_.ignored += p.blocks.ignored;
@@ -165,9 +167,10 @@ void VertexLight::followLobes(BatchContext& c, Sched& sched) {
     p.lights.run(c, sched);
     if (rules_.emissionCounts && lastSkies_.any()) p.last.run(c);
     p.guide.run(c, sched);
+    p.specular.run(c);
     p.gather.take(c, sched);
     p.scatter.run(c, sched);
-    if (!subsurface_.below.empty()) subsurface_.walk(c, sched); // may light further batches here
+    if (!subsurface_.media.empty()) subsurface_.walk(c, sched); // may light further batches here
 }
 
 bool VertexLight::needsPoints(const SurfaceBinding& b) const { return parts_->flight.on() || parts_->lights.needsPoints(b); }
@@ -262,7 +265,7 @@ void VertexLight::beginExits(const BatchContext& c) {
 
 /// Whether the strips of a batch all make the same first request, for one ray each, at nearly all points of the batch.
 bool VertexLight::takes(const BatchContext& c, std::span<KernelStrip* const> strips) const {
-    if (world_.traceSubsets() || c.aside || c.between || c.below || !c.clear.empty() || c.points.empty() ||
+    if (world_.traceSubsets() || c.lightOutput || c.between || c.subsurface || !c.clear.empty() || c.points.empty() ||
         photons_.photonTrace() || !takesRays(c))
         return false;
     size_t asked = 0;

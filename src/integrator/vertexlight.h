@@ -8,6 +8,7 @@
 //   Connection      what lobes reflect of it; shadow rays                                     connection.h
 //   LastVertices    at the end of paths, skies that only rays would reach                     lastvertices.h
 //   GuideScatter    rays of the caustic guide                                                 guidescatter.h
+//   SpecularLights  light of point and distant lights by mirrors       specularlights.h
 //   PhotonGather    light of nearby photons                                                   photongather.h
 //   ScatterRays     directions, roulette, the next rays                                       scatterrays.h
 //   PhotonFlight    for photons, in place of the stages from LobeSelection on                 photonflight.h
@@ -30,6 +31,7 @@ class SubsurfaceWalks;
 class SurfacePoints;
 struct VertexStages;
 
+/// Runs the stages over the vertices of a batch.
 class VertexLight final : Stage {
 public:
     explicit VertexLight(const StageSet&);
@@ -51,6 +53,7 @@ public:
     /// The same for points inside a medium, with its phase function as lobe. lightDirected: by point,
     /// MediumEvents::lightDirection(). needsPoints(): whether the batch needs its points.
     void runMedium(BatchContext&, const Homogeneous&, std::span<const Vec3> lightDirected, Sched&);
+    /// Whether stages read points of such surfaces, beyond the rows of positions.
     bool needsPoints(const SurfaceBinding&) const;
     /// Samples one light for such points and evaluates their lobes toward it, to `found`. False: not possible, no effect.
     bool lightMedium(const BatchContext&, const Homogeneous&, const BoundLight&, std::vector<BlockLit>& found);
@@ -61,6 +64,7 @@ public:
     void runModels(BatchContext&, Sched&);
     /// Reads the requests of a batch whose kernel has run, and follows none.
     void read(BatchContext&, Sched&);
+    /// The stages that it runs.
     const VertexStages& stages() const;
 
 private:

@@ -6,6 +6,7 @@
 
 namespace alpenglow::integrator {
 
+/// Fills the columns of a batch.
 class VertexLoading final : VertexStage {
 public:
     VertexLoading(const StageSet&, const VertexStages&);

@@ -16,6 +16,7 @@ class ShadowRays;
 struct StageSet;
 class SurfaceShading;
 
+/// Runs kernels that are coroutines.
 class WaitingKernels final : Stage {
 public:
     explicit WaitingKernels(const StageSet&);
@@ -36,8 +37,10 @@ public:
     SurfaceShading& shading;
     /// Returns a finished strip's memory and batch to their pools.
     StripMemory takeMemory();
+    /// For the next strip.
     void giveBack(StripMemory, std::shared_ptr<BatchContext>);
     std::vector<KernelStrip*> waiting; ///< with unprocessed requests
+    /// A path had so many bounces.
     void sawDepth(int bounces) { counters_.depthMax = std::max(counters_.depthMax, bounces); }
 
 private:

@@ -8,7 +8,7 @@
 namespace alpenglow::lanes {
 
 inline constexpr int kBlock = kLobeBlock; ///< points of a block
-using Row = float[kBlock];
+using Row = float[kBlock];                ///< a number for each point
 /// A set of points of a block, as bits: bit i is point i.
 using Lanes = uint32_t;
 
@@ -23,7 +23,7 @@ struct alignas(64) VertexBlock {
     Row beyond[3];   ///< what goes on behind the point: `clear`, except for photons at surfaces that are invisible from behind
     Row energyScale; ///< by select(): factor of indirect light for lighting shadeops (energy rule); 1 if reflectance is at most 1
     Row passes;      ///< by select() and pick(): probability of continuing behind the point; 1: in addition to lobes
-    int32_t bounces[kBlock];
+    int32_t bounces[kBlock];                                           ///< of the incoming ray, since the camera
     uint32_t low[kBlock], high[kBlock], index[kBlock], vertex[kBlock]; ///< keys of random numbers: NumberBlock
     uint32_t lightVertex[kBlock];                                      ///< replaces `vertex` for light samples
     Lanes points = 0;
@@ -39,23 +39,24 @@ struct alignas(64) LobeBlock {
     Row weight[3];       ///< of the request, without the ray's throughput
     Row lobe[kLobeRows]; ///< LobeRow
     Row chosen;          ///< by select(): probability of following its ray
-    Lanes asked = 0;
+    Lanes asked = 0;     ///< points whose lobe has a weight
     Lanes lights = 0;    ///< points whose lobe samples lights
-    Lanes elsewhere = 0; ///< by request(): points whose ray starts elsewhere
+    Lanes ownOrigin = 0; ///< by request(): points whose ray starts elsewhere
     Lanes stays = 0;     ///< points whose lobe sends no ray for another reason than depth
     Lanes ended = 0;     ///< by select(): points where a depth limit ends the ray that would have been sent
     Lanes failed = 0;    ///< by select(): points whose probability is not finite; no ray is sent
     Lanes narrow = 0;    ///< points where photons treat the lobe as a mirror, though it is no delta
     Lanes left = 0;      ///< of these: points where it leaves the lights that send photons to them
     Lanes boundless = 0; ///< points where only the depth limit of the picture ends its ray
-    void forget() { asked = lights = elsewhere = stays = ended = failed = narrow = left = boundless = 0; }
+    /// Empties all sets, for the next block; rows keep their values.
+    void forget() { asked = lights = ownOrigin = stays = ended = failed = narrow = left = boundless = 0; }
 };
 
 /// Argument rows of a call: index after the weight, `stride` floats apart; -1: not given.
 struct LobeArguments {
-    int axis = -1; ///< not given: the normal
-    int wo = -1, horizon = -1, a = -1;
-    int from = -1;        ///< trace(): where its ray starts
+    int axis = -1;                     ///< not given: the normal
+    int wo = -1, horizon = -1, a = -1; ///< rows of a triple or a number
+    int from = -1;                     ///< trace(): where its ray starts
     int lights = -1;      ///< trace(): "samplearealights" or "samplelights"; points that say no are looked at one by one
     int samples = -1;     ///< trace(): how many rays it asks for; more than kMostSamples are reported point by point
     float otherwise = 0;  ///< `a` where there is no row
@@ -67,34 +68,34 @@ struct LobeArguments {
     /// given, the number that stands for them.
     bool surface = false;
     int rows[kRowAlbedo - kRowRoughness] = {};
-    float numbers[kRowAlbedo - kRowRoughness] = {};
+    float numbers[kRowAlbedo - kRowRoughness] = {}; ///< values where rows[] is -1
 };
 inline constexpr float kMostSamples = 4096;
 
 /// Samples of one light at the points of a block.
 struct alignas(64) LightBlock {
-    Row w[3];                      ///< unit, toward the light
-    Row Cl[3];                     ///< its light there
-    Row density;                   ///< of the sample: per steradian if rays can hit the light, else the divisor of Cl
-    Row end[3];                    ///< emitters: end of the shadow ray
-    Row far;                       ///< other lights: length of the shadow ray
-    Row keptDiffuse, keptSpecular; ///< fractions reflected by both kinds of lobes: __nondiffuse, __nonspecular
-    Lanes asked = 0;
+    Row w[3];                              ///< unit, toward the light
+    Row Cl[3];                             ///< its light there
+    Row density;                           ///< of the sample: per steradian if rays can hit the light, else the divisor of Cl
+    Row end[3];                            ///< emitters: end of the shadow ray
+    Row far;                               ///< other lights: length of the shadow ray
+    Row keptDiffuse, keptSpecular;         ///< fractions reflected by both kinds of lobes: __nondiffuse, __nonspecular
+    Lanes asked = 0;                       ///< points with a sample
     Lanes metDiffuse = 0, metSpecular = 0; ///< points whose rays of these kinds could hit the light
     bool emitter = false;                  ///< `end` is set
     bool met = false;                      ///< rays can hit it: multiple importance sampling applies
     const float* draws = nullptr;          ///< a row, samples of the light that the lobe takes; null: one
-    bool parted = false;                   ///< `part` is set
+    bool hasPart = false;                  ///< `part` is set
     Row part;                              ///< MIS weight of samples of this kind
 };
 
 /// An emitter of a few flat triangles with one normal each, current space: data for Emitter::sample().
 struct FlatEmitter {
-    static constexpr int kMost = 4;
-    int count = 0, cornerCount = 0;
-    double corner[3 * kMost][3]; ///< unique corners
-    int corners[kMost][3];       ///< of triangles
-    float normal[kMost][3];      ///< unit
+    static constexpr int kMost = 4; ///< most triangles
+    int count = 0, cornerCount = 0; ///< triangles; different corners
+    double corner[3 * kMost][3];    ///< unique corners
+    int corners[kMost][3];          ///< of triangles
+    float normal[kMost][3];         ///< unit
     // Near points are sampled uniformly by solid angle.
     double centre[3];
     double near2, least2;         ///< squared: near if closer to the centre; accurate if farther from a corner
@@ -107,8 +108,8 @@ struct FlatEmitter {
 
 /// Shadow rays of a block toward one light.
 struct alignas(64) ShadowBlock {
-    Row origin[3], direction[3], length;
-    Row light[3]; ///< by contribute(): unoccluded light
+    Row origin[3], direction[3], length; ///< camera space; direction: unit
+    Row light[3];                        ///< by contribute(): unoccluded light
 };
 
 /// Continuing rays of paths from a block.
@@ -119,13 +120,14 @@ struct alignas(64) ScatterBlock {
     Row request[3], spread, indirect; ///< of that lobe: weight, half angle in radians, and 1 if `energyScale` applies, else 0
     Row origin[3], weight[3];         ///< by extend()
     uint32_t vertex[kBlock];          ///< by name(): random number key
-    Row dice;
-    Lanes goes = 0, single = 0; ///< single: delta lobes, without pdf
+    Row dice;                         ///< for the roulette, in [0, 1)
+    Lanes goes = 0, single = 0;       ///< single: delta lobes, without pdf
 };
 
 /// Rays in the layout of the queues: a row for each word of a scheduler task (integrator/raywords.h). A pointer takes two rows.
 struct alignas(64) RayBlock {
-    static constexpr int kWords = 32;
+    static constexpr int kWords = 32; ///< rows, and words of a task
+    /// PathRay's members of these names.
     int32_t depth[kBlock], target[kBlock];
     Row origin[3], direction[3], maxDistance, weight[3];
     uint32_t sample[2][kBlock], kind[2][kBlock], media[2][kBlock];
@@ -134,6 +136,7 @@ struct alignas(64) RayBlock {
     uint32_t specular[kBlock]; ///< specular bounces; layers in the upper half
     uint32_t path[kBlock];     ///< light path state; bounces in media in the upper half
     uint32_t flags[kBlock];    ///< requested rays; above them PathRay::first to passed, and the trail
+    /// Members of PathRay and of its Footprint; `binding` and `extra` are indices, -1: none.
     Row pdf, lobeOrigin[3];
     int32_t binding[kBlock];
     Row width, spread;
@@ -159,8 +162,8 @@ struct SelectRules {
 /// Further results of select(): points whose reflectance exceeds 1, alone or with transparency; points with probabilities that
 /// are not finite.
 struct Selected {
-    Lanes bright = 0, brightWithClear = 0, failed = 0;
-    Lanes cut = 0; ///< points of VertexBlock::last where a lobe would have been followed
+    Lanes bright = 0, brightWithClear = 0, failed = 0; ///< sets of points
+    Lanes cut = 0;                                     ///< points of VertexBlock::last where a lobe would have been followed
 };
 
 } // namespace alpenglow::lanes

@@ -7,15 +7,20 @@ namespace alpenglow::lanes::AL_NAMESPACE {
 
 typedef int64_t vl __attribute__((ext_vector_type(ALPENGLOW_LANES))); ///< mask of vd
 
+/// Conversions of each lane: to double, to 64-bit and to 32-bit masks.
 AL_INLINE vd doubles(vf x) { return __builtin_convertvector(x, vd); }
 AL_INLINE vl longMask(vm m) { return __builtin_convertvector(m, vl); }
 AL_INLINE vm shortMask(vl m) { return __builtin_convertvector(m, vm); }
+/// Rounded correctly.
 AL_INLINE vd rootOf(vd x) { return __builtin_elementwise_sqrt(x); }
+/// X, but 0 for negative x and NaN.
 AL_INLINE vd least0(vd x) { return 0 < x ? x : vd(0); }
+/// True where x is neither infinite nor NaN.
 AL_INLINE vl isFinite(vd x) { return __builtin_elementwise_abs(x) < vd(__builtin_inf()); }
 
 /// Nodes in registers, one for each lane.
 struct NodeLanes {
+    /// LightNode's members of these names, by lane.
     V3 centre;
     vi next, count;
     vm everywhere, faces;
@@ -37,6 +42,7 @@ AL_INLINE void loadRows(const void* const (&of)[kW], vu (&row)[16]) {
         for (int k = 0; k < kW; ++k) row[first + k] = square[k];
     }
 }
+/// The same bits as floats; complete nodes from the addresses of LightNode.
 AL_INLINE vf floatsOf(vu v) { return __builtin_bit_cast(vf, v); }
 AL_INLINE NodeLanes loadNodes(const void* const (&of)[kW]) {
     vu row[16];
@@ -54,6 +60,7 @@ AL_INLINE NodeLanes loadNodes(const void* const (&of)[kW]) {
     return n;
 }
 
+/// Squared distance from the node's centre.
 AL_INLINE vd distance2(const NodeLanes& n, const V3& at) {
     const V3 to = n.centre - at;
     const vd d2 = doubles(dot(to, to));
@@ -80,16 +87,18 @@ static vd towards(const void* const (&of)[kW], const V3& at) {
     turn(c, rootOf(least0(1 - c * c)), cosine, sine);
     return d2 > radius2 ? (cosine < 0 ? vd(0) : cosine) : vd(1);
 }
+/// Whether any lane is set.
 AL_INLINE bool anyOf(vm m) { return __builtin_reduce_or(m) != 0; }
 
 /// Descents in the tree for all points: current node, its share, start in the cumulative probabilities, and teeth of the comb
 /// before that.
 struct Ways {
-    static constexpr int kRoom = kBlock * (LightTree::kMostChosen + 1) + kW;
+    static constexpr int kRoom = kBlock * (LightTree::kMostChosen + 1) + kW; ///< most descents at a time
+    /// By descent: node and point of the block; position; random number in [0, 1); share, start and teeth.
     int32_t next[kRoom], lane[kRoom];
     float at[3][kRoom];
     double random[kRoom], share[kRoom], begin[kRoom], teeth[kRoom];
-    int size = 0;
+    int size = 0; ///< number of descents
     /// Replaces an entry by the last one.
     void drop(int i) {
         const int last = --size;
@@ -100,23 +109,26 @@ struct Ways {
 };
 /// The two children, by descent.
 struct Children {
-    int32_t next[2][Ways::kRoom], count[2][Ways::kRoom];
+    int32_t next[2][Ways::kRoom], count[2][Ways::kRoom]; ///< by child and descent: LightNode::next and count
+    /// By child and descent: importance, and share of what has no direction.
     double weight[2][Ways::kRoom], blind[2][Ways::kRoom];
     int32_t faces[2 * Ways::kRoom]; ///< children whose front counts: twice the descent, plus the child
-    int facing;
-    int32_t over[Ways::kRoom]; ///< descents that have ended, in order
-    int ended;
+    int facing;                     ///< number of entries of `faces`
+    int32_t over[Ways::kRoom];      ///< descents that have ended, in order
+    int ended;                      ///< number of entries of `over`
 };
 struct Choosing {
-    const LightTree& tree;
-    const Row* P;
-    const double* random;
-    ChosenLight* to;
-    int count;
-    Ways& ways;
-    Children& children;
+    const LightTree& tree; ///< to choose from
+    const Row* P;          ///< three rows, current space
+    const double* random;  ///< by point, in [0, 1)
+    ChosenLight* to;       ///< receives the choices
+    int count;             ///< number of choices
+    Ways& ways;            ///< scratch
+    Children& children;    ///< scratch
 };
+/// Probability that a light with this share is chosen.
 AL_INLINE vd probability(const LightTree& t, vd share, vd blind) { return t.wanted * (t.seeing * share + blind); }
+/// Appends the light of a leaf to the choices, with probability p.
 AL_INLINE void choose(Choosing& c, int32_t leaf, int lane, double p) {
     c.to[c.count++] = {~leaf, lane, float(1.0 < p ? 1.0 : p)};
 }
@@ -130,6 +142,7 @@ AL_INLINE void goInto(Choosing& c, int32_t next, int lane, double share, double 
     for (int q = 0; q < 3; ++q) w.at[q][i] = c.P[q][lane];
     w.random[i] = c.random[lane], w.share[i] = share, w.begin[i] = begin, w.teeth[i] = teeth;
 }
+/// As many doubles as there are lanes.
 AL_INLINE vd loadDoubles(const double* from) {
     vd v;
     __builtin_memcpy(&v, from, sizeof v);
@@ -139,13 +152,14 @@ AL_INLINE vd loadDoubles(const double* from) {
 /// Cuts of points in lanes: each iteration handles one node of some points.
 struct CutLanes {
     static constexpr int kTurns = 2 * LightTree::kCut; ///< one for each node that is opened and each that stays
-    int32_t next[kTurns][kW], count[kTurns][kW];
-    double importance[kTurns][kW], blind[kTurns][kW];
-    Lanes here[kTurns];
-    int turns;
-    vd total;
+    int32_t next[kTurns][kW], count[kTurns][kW];       ///< by turn and lane: LightNode::next and count
+    double importance[kTurns][kW], blind[kTurns][kW];  ///< by turn and lane
+    Lanes here[kTurns];                                ///< by turn: lanes that are not done
+    int turns;                                         ///< number of turns
+    vd total;                                          ///< sum of the importances, by lane
 };
 
+/// Finds the cut of each point: the nodes among which its first choice is made.
 static void cutAt(const LightTree& t, const V3& at, Lanes asked, CutLanes& c) {
     alignas(64) int32_t node[LightTree::kCut + 1][kW], now[kW], next[kW], place[kW], size[kW];
     for (int k = 0; k < kW; ++k) {
@@ -292,6 +306,7 @@ static void goDown(Choosing& c, int first, int size) {
     }
 }
 
+/// Stages::chooseLights.
 static int chooseLights(const LightTree& tree, const Row* P, const float* random, Lanes points, ChosenLight* to) {
     alignas(64) double u[kBlock];
     for (int i = 0; i < kBlock; ++i) u[i] = double(random[i]);

@@ -4,6 +4,7 @@
 
 namespace alpenglow::lanes::AL_NAMESPACE {
 
+/// Stages::placeFar.
 static Lanes placeFarLights(const float* L, int stride, bool endless, LightBlock& to) {
     Lanes odd = 0;
     for (int at = 0; at < kBlock; at += kW) {
@@ -18,6 +19,7 @@ static Lanes placeFarLights(const float* L, int stride, bool endless, LightBlock
     return odd;
 }
 
+/// Stages::aim.
 static void aimShadowRays(const VertexBlock& v, const LightBlock& l, ShadowBlock& to) {
     for (int at = 0; at < kBlock; at += kW) {
         const V3 w = load3(l.w, at), from = leave(v, at, w);
@@ -34,6 +36,7 @@ static void aimShadowRays(const VertexBlock& v, const LightBlock& l, ShadowBlock
     }
 }
 
+/// Stages::contribute.
 static Lanes contributeLight(const VertexBlock& v, const LobeBlock& lobe, const LightBlock& l, const float* kept, Lanes met,
                              bool ahead, const float* value, ShadowBlock& to, Lanes* failed) {
     Lanes some = 0;
@@ -47,7 +50,7 @@ static Lanes contributeLight(const VertexBlock& v, const LobeBlock& lobe, const 
         if (ahead && l.emitter) mask &= dot(load3(l.end, at) - load3(to.origin, at), load3(l.w, at)) > 0;
         V3 c = load3(lobe.weight, at) * load3(v.weight, at) * load3(l.Cl, at);
         c = c * (load3(value + kRowColour * kBlock + at, kBlock) / (l.draws ? fcos * load(l.draws + at) : fcos));
-        if (l.parted) c = c * load(l.part + at);
+        if (l.hasPart) c = c * load(l.part + at);
         if (l.met) { // `other`: density of this direction by the lobe's own sampling
             const vf chosen = load(lobe.chosen + at);
             const vf other = select(maskFrom(met, at) & (chosen > 0), pdf * chosen, vf(0));

@@ -6,23 +6,28 @@
 
 namespace alpenglow::lanes::AL_NAMESPACE {
 
-inline constexpr int kH = kW / 2;
+inline constexpr int kH = kW / 2; ///< points in half a vector: doubles of the same size
+/// Floats and doubles of half the lanes.
 typedef float hf __attribute__((ext_vector_type(ALPENGLOW_LANES / 2)));
 typedef double hd __attribute__((ext_vector_type(ALPENGLOW_LANES / 2)));
 typedef exact::MaskOf<hd> hm; ///< mask, and integers
 
+/// Three rows in double.
 struct D3 {
-    hd x, y, z;
+    hd x, y, z; ///< by lane
 };
+/// As of Vec3d, by lane.
 AL_INLINE D3 operator+(const D3& a, const D3& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
 AL_INLINE D3 operator-(const D3& a, const D3& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 AL_INLINE D3 operator*(const D3& a, hd s) { return {a.x * s, a.y * s, a.z * s}; }
 AL_INLINE D3 operator/(const D3& a, hd s) { return {a.x / s, a.y / s, a.z / s}; }
 AL_INLINE hd dot(const D3& a, const D3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 AL_INLINE D3 cross(const D3& a, const D3& b) { return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x}; }
+/// Rounded correctly.
 AL_INLINE hd rootOf(hd x) { return __builtin_elementwise_sqrt(x); }
 /// Root of a value that rounding may have made negative.
 AL_INLINE hd rootAbove(hd x) { return rootOf(x > 0 ? x : hd(0)); }
+/// By lane, as of Vec3d and of the standard library; wide() and storeNarrow() convert from and to floats.
 AL_INLINE hd length(const D3& a) { return rootOf(dot(a, a)); }
 AL_INLINE D3 choose(hm m, const D3& a, const D3& b) { return {m ? a.x : b.x, m ? a.y : b.y, m ? a.z : b.z}; }
 AL_INLINE D3 normalize(const D3& a) {
@@ -46,6 +51,7 @@ AL_INLINE D3 cornerOf(const FlatEmitter& e, hm t, int corner) {
     return c;
 }
 
+/// Whether the emitter is so near that solid angles count (TriangleLamp::see()).
 AL_INLINE hm isNear(const FlatEmitter& e, const D3& from) {
     const D3 middle = constant(e.centre) - from;
     return dot(middle, middle) < e.near2;
@@ -53,9 +59,10 @@ AL_INLINE hm isNear(const FlatEmitter& e, const D3& from) {
 
 /// The triangles seen from points: TriangleLamp::see().
 struct SeenLanes {
-    hd angle[FlatEmitter::kMost], total;
-    D3 way[3 * FlatEmitter::kMost]; ///< unit, toward the corners
+    hd angle[FlatEmitter::kMost], total; ///< solid angles, steradians: of each triangle, and their sum
+    D3 way[3 * FlatEmitter::kMost];      ///< unit, toward the corners
 };
+/// Fills s; returns the points that see the lamp by solid angle.
 AL_INLINE hm seeLamp(const FlatEmitter& e, const D3& from, SeenLanes& s) {
     hm seen = isNear(e, from);
     for (int i = 0; i < e.cornerCount; ++i) {
@@ -86,8 +93,8 @@ AL_INLINE D3 withinAngle(const D3& a, const D3& b, const D3& c, hd angle, hd u, 
     const hd cosB1 = divisor != 0 ? clamp(((q * t - p * s) * cosA - q) / divisor, hd(-1), hd(1)) : hd(1);
     const D3 c1 = a * cosB1 + normalize(c - a * dot(c, a)) * rootAbove(1 - cosB1 * cosB1);
     const hd z = 1 - v * (1 - dot(c1, b));
-    const D3 aside = c1 - b * dot(c1, b);
-    return choose(dot(aside, aside) > 0, b * z + normalize(aside) * rootAbove(1 - z * z), b);
+    const D3 across = c1 - b * dot(c1, b);
+    return choose(dot(across, across) > 0, b * z + normalize(across) * rootAbove(1 - z * z), b);
 }
 
 /// TriangleLamp::place().
@@ -133,10 +140,11 @@ AL_INLINE void placeByArea(const FlatEmitter& e, hd x, hd y, hm& t, hd& b1, hd& 
 
 /// Points of a block and their positions on the emitter, in double.
 struct alignas(64) PlaceRows {
-    double from[3][kBlock], u[2][kBlock];
+    double from[3][kBlock], u[2][kBlock];         ///< current space; random numbers in [0, 1)
     double b1[kBlock], b2[kBlock], total[kBlock]; ///< total: solid angle; 0: uniform by area
-    int64_t triangle[kBlock];
+    int64_t triangle[kBlock];                     ///< of the emitter
 };
+/// Doubles of half the lanes, from p on; the points of a block.
 AL_INLINE hd loadHalf(const double* p) {
     hd v;
     __builtin_memcpy(&v, p, sizeof v);
@@ -177,6 +185,7 @@ static void placeTogether(const FlatEmitter& e, PlaceRows& r, const int* lanes, 
     }
 }
 
+/// Positions on the emitter for all points of the block.
 AL_INLINE void placeAll(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, PlaceRows& r) {
     int near[kBlock], count = 0, halves = 0; // halves: half registers with some near points
     bool some[kBlock / kH];
@@ -247,6 +256,7 @@ AL_INLINE Lanes seenFrom(const VertexBlock& v, const PlaceRows& r, const double*
     return placed;
 }
 
+/// Stages::place.
 static Lanes placeOnEmitter(const VertexBlock& v, const FlatEmitter& e, const float* x, const float* y, const double* share,
                             LightBlock& to, float* P, float* N, int stride) {
     PlaceRows r;
@@ -290,6 +300,7 @@ AL_INLINE void placeEach(const VertexBlock& v, const FlatEmitter* const* lamps, 
     }
 }
 
+/// Stages::placeEach.
 static Lanes placeOnEmitters(const VertexBlock& v, const FlatEmitter* const* lamps, const float* x, const float* y,
                              const double* share, LightBlock& to, float* P, float* N, int stride) {
     PlaceRows r;

@@ -4,9 +4,10 @@
 
 namespace alpenglow::lanes::AL_NAMESPACE {
 
+/// Helpers of loadRecords() and storeRecords(): numbers as types.
 template <class, int...> struct Numbers {};
 template <class T, T... I> struct NumbersOf {
-    using Type = Numbers<T, I...>;
+    using Type = Numbers<T, I...>; ///< T(I)...
 };
 using LaneNumbers = __make_integer_seq<NumbersOf, int, kW>::Type; ///< 0 to kW - 1
 
@@ -28,6 +29,7 @@ AL_INLINE void transpose(vu (&rows)[kW]) {
     }
 }
 
+/// Stages::load.
 static void loadRecords(const void* from, int stride, int count, int words, void* rows) {
     uint32_t* to = static_cast<uint32_t*>(rows);
     for (int at = 0; at < kBlock; at += kW) {
@@ -46,6 +48,7 @@ static void loadRecords(const void* from, int stride, int count, int words, void
     }
 }
 
+/// Stages::store.
 static int storeRecords(const void* rows, int words, Lanes points, void* to) {
     const uint32_t* from = static_cast<const uint32_t*>(rows);
     int stored = 0;

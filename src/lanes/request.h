@@ -35,12 +35,13 @@ AL_INLINE void giveSurface(const LobeArguments& a, const float* rows, int stride
 }
 
 /// trace() rays that do not start at the point.
-AL_INLINE vm startsElsewhere(const VertexBlock& v, const float* rows, int stride, int at) {
+AL_INLINE vm hasOwnOrigin(const VertexBlock& v, const float* rows, int stride, int at) {
     const V3 P = load3(v.P, at), size = absolute(P);
     const vf near = vf(1.1920929e-7f) * (size.x + size.y + size.z) + vf(1e-37f);
     return ~(length(load3(rows + at, stride) - P) <= near + vf(4) * load(v.error + at));
 }
 
+/// Stages::request.
 static Lanes requestLobes(const VertexBlock& v, const LobeArguments& a, const float* weight, int stride, Lanes asked,
                           LobeBlock& to) {
     const float* rows = weight + 3 * stride;
@@ -62,7 +63,7 @@ static Lanes requestLobes(const VertexBlock& v, const LobeArguments& a, const fl
         }
         store(to.lobe[kRowA] + at, x);
         some |= bitsFrom(wanted, at);
-        if (a.from >= 0) to.elsewhere |= bitsFrom(wanted & startsElsewhere(v, rows + a.from * stride, stride, at), at);
+        if (a.from >= 0) to.ownOrigin |= bitsFrom(wanted & hasOwnOrigin(v, rows + a.from * stride, stride, at), at);
         odd |= bitsFrom(wanted & ~usual, at) | bitsFrom(mask & ~finite(w), at);
     }
     to.asked |= some;
@@ -95,6 +96,7 @@ AL_INLINE Lanes deepOf(const VertexBlock& v, const LobeBlock& l, const SelectRul
     return rules.sites[site].endless ? 0 : v.deep[rules.sites[site].diffuse] & (v.last | ~l.boundless);
 }
 
+/// select() for the lanes from `at` on.
 AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules, int at,
                            Selected& found) {
     V3 sum{vf(0), vf(0), vf(0)}, clear = sum, beyond = sum;
@@ -158,6 +160,7 @@ AL_INLINE void selectLanes(VertexBlock& v, LobeBlock* const* sites, int count, c
     store(v.passes + at, v.through ? select(some, __builtin_convertvector(passes, vf), vf(1)) : vf(1));
 }
 
+/// Stages::select.
 static Selected selectLobes(VertexBlock& v, LobeBlock* const* sites, int count, const SelectRules& rules) {
     Selected found;
     for (int s = 0; s < count; ++s) sites[s]->ended = sites[s]->failed = 0;

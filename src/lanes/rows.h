@@ -7,10 +7,12 @@
 namespace alpenglow::lanes::AL_NAMESPACE {
 using namespace shadeops::AL_NAMESPACE;
 
-inline constexpr int kW = ALPENGLOW_LANES;
+inline constexpr int kW = ALPENGLOW_LANES; ///< lanes of a vector
+/// Double and 64-bit integer for each lane.
 typedef double vd __attribute__((ext_vector_type(ALPENGLOW_LANES)));
 typedef uint64_t vq __attribute__((ext_vector_type(ALPENGLOW_LANES)));
 
+/// As many numbers of a row as there are lanes, from p on.
 AL_INLINE vf load(const float* p) {
     vf v;
     __builtin_memcpy(&v, p, sizeof v);
@@ -26,8 +28,10 @@ AL_INLINE vu loadBits(const uint32_t* p) {
     __builtin_memcpy(&v, p, sizeof v);
     return v;
 }
+/// Writes a vector to p, unaligned.
 template <class V> AL_INLINE void store(void* p, V v) { __builtin_memcpy(p, &v, sizeof v); }
 
+/// Masks from and to the bits of a set of points, from point `at` on.
 AL_INLINE vm maskFrom(Lanes bits, int at) {
     vi bit;
     for (int k = 0; k < kW; ++k) bit[k] = 1 << k;
@@ -40,12 +44,14 @@ AL_INLINE Lanes bitsFrom(vm m, int at) {
     __builtin_memcpy(&bits, &b, sizeof b);
     return (bits & ((1u << kW) - 1)) << at;
 }
+/// True where x is neither infinite nor NaN.
 AL_INLINE vm finite(vf x) { return (bitsOf(x) & 0x7f800000u) != 0x7f800000u; }
 
 /// Three rows in registers.
 struct V3 {
-    vf x, y, z;
+    vf x, y, z; ///< by lane
 };
+/// Three rows from a block, or rows `stride` floats apart; operators and functions as of Vec3, by lane.
 AL_INLINE V3 load3(const Row* r, int at) { return {load(r[0] + at), load(r[1] + at), load(r[2] + at)}; }
 AL_INLINE V3 load3(const float* rows, int stride) { return {load(rows), load(rows + stride), load(rows + 2 * stride)}; }
 AL_INLINE void store3(Row* r, int at, const V3& v) {
@@ -91,6 +97,7 @@ AL_INLINE vf stepAway(vf x, vf by) {
     const vm goes = (by != 0) & (by == by) & (absLanes(x) < vf(__builtin_inff()));
     return __builtin_bit_cast(vf, goes ? moved : bits);
 }
+/// Of a point of a block.
 AL_INLINE V3 offsetOrigin(const V3& P, const V3& n, vf error, const V3& w) {
     const vf d = vf(2) * error;
     const V3 off = n * select(dot(w, n) >= 0, d, -d), o = P + off;

@@ -4,6 +4,7 @@
 
 namespace alpenglow::lanes::AL_NAMESPACE {
 
+/// Stages::pick.
 static void pickLobe(VertexBlock& v, const LobeBlock* const* sites, int count, const float* number, ScatterBlock& to) {
     to.goes = to.single = 0;
     for (int at = 0; at < kBlock; at += kW) {
@@ -32,6 +33,7 @@ static void pickLobe(VertexBlock& v, const LobeBlock* const* sites, int count, c
     }
 }
 
+/// Stages::takeDirections.
 static void takeDirections(const LobeBlock& lobe, int site, bool lighting, const float* drawn, ScatterBlock& to) {
     for (int at = 0; at < kBlock; at += kW) {
         const vm mine = loadInt(to.site + at) == site;
@@ -48,6 +50,7 @@ static void takeDirections(const LobeBlock& lobe, int site, bool lighting, const
     }
 }
 
+/// Stages::takeValues.
 static void takeValues(const LobeBlock&, int site, const float* value, ScatterBlock& to) {
     for (int at = 0; at < kBlock; at += kW) {
         const vm mine = (loadInt(to.site + at) == site) & maskFrom(to.goes & ~to.single, at);
@@ -56,12 +59,14 @@ static void takeValues(const LobeBlock&, int site, const float* value, ScatterBl
     }
 }
 
+/// mix64() of base/hash.h, by lane.
 AL_INLINE vq mixed(vq v) {
     v = (v ^ (v >> 30)) * vq(0xbf58476d1ce4e5b9ull);
     v = (v ^ (v >> 27)) * vq(0x94d049bb133111ebull);
     return v ^ (v >> 31);
 }
 
+/// Stages::name.
 static void nameVertices(const VertexBlock& v, const uint32_t* key, ScatterBlock& to) {
     const vq first = mixed(vq(0x9e3779b97f4a7c15ull)); // childVertex() of occurrence 0
     for (int at = 0; at < kBlock; at += kW) {
@@ -80,6 +85,7 @@ AL_INLINE vf chanceToGoOn(Roulette rule, const V3& weight, const V3& request, co
     return select(most >= 1, vf(1), select((most > 0) & (dice < most), most, vf(0)));
 }
 
+/// Stages::extend.
 static Lanes extendPaths(const VertexBlock& v, Roulette rule, ScatterBlock& to) {
     Lanes bad = 0, goes = 0;
     for (int at = 0; at < kBlock; at += kW) {

@@ -18,9 +18,10 @@
 
 namespace alpenglow::lanes {
 
+/// The stages of one lane width.
 struct Stages {
     /// Sets the rows named by `needs` (LobeNeed) for the points of `asked`, and LobeBlock::asked, the points of nonzero weight,
-    /// including weights, and LobeBlock::elsewhere. Returns points that must be processed one by one: numbers that are not
+    /// including weights, and LobeBlock::ownOrigin. Returns points that must be processed one by one: numbers that are not
     /// finite, directions whose square overflows or underflows.
     Lanes (*request)(const VertexBlock&, const LobeArguments&, const float* weight, int stride, Lanes asked, LobeBlock&);
     /// Sets LobeBlock::chosen, VertexBlock::energyScale and passes.

@@ -16,7 +16,7 @@ public:
 
 private:
     void error(std::string text) {
-        if (said_.insert(text).second) m_.notes.push_back({true, std::move(text)});
+        if (reported_.insert(text).second) m_.notes.push_back({true, std::move(text)});
     }
     void index(int32_t& i, size_t size, const char* what) {
         if (i != kNone && (i < 0 || size_t(i) >= size)) {
@@ -46,7 +46,7 @@ private:
     void lightsAndCameras();
 
     Model& m_;
-    std::set<std::string> said_;
+    std::set<std::string> reported_;
 };
 
 void Checker::texture(Texture& t) {

@@ -9,16 +9,18 @@
 
 namespace alpenglow::models {
 
+/// A picture that a material reads.
 struct MaterialxMap {
     std::string file; ///< a path that was found
     bool colour;      ///< sRGB that becomes light; else numbers
-    Wrap u, v;
+    Wrap u, v;        ///< where u or v are outside 0 to 1
 };
 /// The name that shaders shall use for a picture; "" after an error that was reported.
 using MaterialxMaps = std::function<std::string(const MaterialxMap&)>;
 
+/// What a shader is made of.
 struct MaterialxOptions {
-    std::string file;
+    std::string file;     ///< the .mtlx file
     std::string material; ///< its name in the file; "" the first
     std::string shader;   ///< the name of the surface shader
     std::string standard; ///< the text of standard.sl

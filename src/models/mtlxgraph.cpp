@@ -49,7 +49,7 @@ MtlxValue mtlxFit(MtlxValue v, size_t width) {
 }
 
 void MtlxGraph::warn(const XmlElement& at, const std::string& text) {
-    if (said_.insert(text).second && said_.size() < 50)
+    if (reported_.insert(text).second && reported_.size() < 50)
         diags_.report(Severity::Warning, Rie::Incapable, {file_, at.line, at.column}, text);
 }
 

@@ -11,8 +11,10 @@ namespace alpenglow::models {
 /// 1: float, integer, boolean; 2: vector2; 3: color3, vector3; 4: color4, vector4.
 using MtlxValue = std::vector<std::string>;
 
+/// Translates the nodes of one file, each once.
 class MtlxGraph {
 public:
+    /// root: the element materialx. file: for messages. All must outlive the graph.
     MtlxGraph(const XmlElement& root, const std::string& file, const MaterialxMaps& maps, Diagnostics& d)
         : root_(root), file_(file), maps_(maps), diags_(d) {}
 
@@ -22,6 +24,7 @@ public:
     bool constant(const XmlElement& node, const std::string& name) const;
     /// The statements so far.
     const std::string& code() const { return code_; }
+    /// Warns once of something that the translation leaves out.
     void warn(const XmlElement& at, const std::string& text);
 
 private:
@@ -54,7 +57,7 @@ private:
     int count_ = 0, graphs_ = 0; ///< graphs_: how many lie in each other now
     std::map<std::pair<const XmlElement*, std::string>, MtlxValue> known_;
     std::set<const XmlElement*> open_;
-    std::set<std::string> said_;
+    std::set<std::string> reported_;
 };
 
 /// Numbers of a type; 0: no type that is a value here.
@@ -65,8 +68,8 @@ MtlxValue mtlxFit(MtlxValue, size_t width);
 std::string mtlxNumber(double);
 /// What nodes see of the graph while one of them is made.
 struct MtlxNodes {
-    MtlxGraph& g;
-    const XmlElement& n;
+    MtlxGraph& g;            ///< the graph that is translated
+    const XmlElement& n;     ///< the node
     const XmlElement* graph; ///< the nodegraph that it is in, or null
     std::string output;      ///< which of its outputs
     /// The value of the node; nothing: its kind is not known.

@@ -6,7 +6,7 @@ namespace alpenglow::models {
 
 /// Places of all nodes, in the space of the scene, and the weights of their morph targets.
 struct Pose {
-    std::vector<Matrix> world;
+    std::vector<Matrix> world;                ///< by node: to the space of the scene
     std::vector<std::vector<double>> weights; ///< by node; none: those of the mesh
 };
 
@@ -23,6 +23,7 @@ bool deforms(const Node&, const Mesh&, const Part&);
 struct Shape {
     std::vector<float> P, N;
 };
+/// Of one part of a node's mesh.
 Shape shapeAt(const Model&, const Pose&, int node, const Mesh&, const Part&);
 
 /// The skin that moves a mesh of a node, or kNone.

@@ -8,8 +8,8 @@ namespace alpenglow::models {
 
 /// What a map of a material is made of.
 struct MapWish {
-    const Texture* texture;
-    bool colour; ///< sRGB that becomes light; else numbers
+    const Texture* texture; ///< a texture with a picture
+    bool colour;            ///< sRGB that becomes light; else numbers
 };
 /// The map of a wish: its name as the scene shall have it ("": there is none, the factor alone counts) and its channels.
 struct MapFile {
@@ -18,6 +18,7 @@ struct MapFile {
 };
 using MapMaker = std::function<MapFile(const MapWish&)>;
 
+/// What the command line sets.
 struct RibOptions {
     std::string picture;   ///< name of the display
     int animation = 0;     ///< which one moves the model, where it has any; kNone: none

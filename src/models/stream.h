@@ -7,6 +7,7 @@
 
 namespace alpenglow::models {
 
+/// Bytes for fromBytes().
 std::vector<uint8_t> toBytes(const Model&);
 /// Nothing: the bytes are not what toBytes() makes. Numbers are not looked at: check.h.
 std::optional<Model> fromBytes(std::span<const uint8_t>);

@@ -8,6 +8,7 @@
 
 namespace alpenglow::photonmap {
 
+/// Photons in the cells of a grid, for a progressive pass whose radii are known before.
 class PhotonGrid {
 public:
     PhotonGrid() = default;
@@ -16,6 +17,7 @@ public:
     /// For moving scenes: `times` has the time of each photon as a fraction of the open shutter. A lookup uses photons within
     /// half of `window` of its time.
     PhotonGrid(std::vector<Photon> photons, float radius, std::span<const float> times, float window);
+    /// As given to the constructor; number of photons.
     float radius() const { return radius_; }
     size_t size() const { return photons_.size(); }
     /// Length of the time interval of photons for a lookup at this time, as a fraction of the open shutter; 1 without motion.
@@ -59,6 +61,7 @@ float radiusOfPass(float first, uint32_t pass);
 struct MovingStart {
     float radius, window;
 };
+/// Radius: of the estimate without motion, camera space, > 0.
 MovingStart movingStart(float radius, float travel);
 inline constexpr float kLeastWindow = .125f;
 

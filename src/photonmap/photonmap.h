@@ -8,23 +8,26 @@
 
 namespace alpenglow::photonmap {
 
+/// The photons of one pass or file in a tree, for searches of the nearest. Immutable after it was built.
 class PhotonMap {
 public:
     PhotonMap() = default;
     /// The photons in order of emission.
     explicit PhotonMap(std::vector<Photon> photons);
+    /// Number of photons.
     size_t size() const { return photons_.size(); }
     std::span<const Photon> photons() const { return photons_; } ///< in the order of the tree
     /// Total power.
     Color power() const;
 
+    /// How nearest photons are searched.
     struct Lookup {
         Vec3 P, N;                   ///< N: unit; only light on its side counts
         int estimator = 50;          ///< number of photons in the estimate, 1 to kMostAsked
         int minBounces = 0;          ///< photons with fewer are ignored
         uint64_t* visited = nullptr; ///< counts visited photons
     };
-    static constexpr int kMostAsked = 4096;
+    static constexpr int kMostAsked = 4096; ///< most photons of one search
     /// Irradiance, in radiance times steradians: power of the nearest `estimator` photons over the area of the disk to the next
     /// one, which is unbiased for uniform photons. With fewer photons the farthest one bounds the disk. Biased where light varies
     /// within the disk.

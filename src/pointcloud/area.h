@@ -12,8 +12,8 @@ inline int areaChannel(const PointCloud& c) {
 }
 /// The value of the channel; without a channel the square inscribed in the disk; 1 without a disk.
 inline double areaOf(const PointCloud& c, size_t point, int channel) {
-    const double r = double(c.radius[point]), said = channel < 0 ? 0 : double(c.valuesOf(point)[size_t(channel)]);
-    return said > 0 ? said : r > 0 ? 2 * r * r : 1;
+    const double r = double(c.radius[point]), reported = channel < 0 ? 0 : double(c.valuesOf(point)[size_t(channel)]);
+    return reported > 0 ? reported : r > 0 ? 2 * r * r : 1;
 }
 
 } // namespace alpenglow::pointcloud

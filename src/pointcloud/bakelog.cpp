@@ -86,21 +86,21 @@ bool BakeLog::add(const std::string& file, const BakeLayout& layout, const BakeK
     return true;
 }
 
-void BakeLog::settle() {
+void BakeLog::commit() {
     const std::lock_guard lock(mutex_);
-    for (auto& [name, f] : files_) settle(f);
+    for (auto& [name, f] : files_) commit(f);
     count();
 }
 
 /// Counts records after averaging samples.
 void BakeLog::count() {
     bytes_ = 0;
-    for (const auto& [name, f] : files_) bytes_ += f.settled.size() * sizeof(float) + f.rows.size() * sizeof(Row);
+    for (const auto& [name, f] : files_) bytes_ += f.committed.size() * sizeof(float) + f.rows.size() * sizeof(Row);
 }
 
 /// Records of one point and call are consecutive, sample by sample. If all samples have equally many, they are averaged one by
 /// one.
-void BakeLog::settle(File& f) {
+void BakeLog::commit(File& f) {
     const auto less = [&](const Entry& a, const Entry& b) {
         const auto x = pointOf(a.key, *a.layout), y = pointOf(b.key, *b.layout);
         return x != y ? x < y : a.key.sample < b.key.sample;
@@ -136,8 +136,8 @@ void BakeLog::settle(File& f) {
             group.push_back(&f.entries[k]);
         }
         const auto put = [&](auto&& number) {
-            f.rows.push_back({first.layout, f.settled.size()});
-            for (size_t k = 0; k < width; ++k) f.settled.push_back(number(k));
+            f.rows.push_back({first.layout, f.committed.size()});
+            for (size_t k = 0; k < width; ++k) f.committed.push_back(number(k));
         };
         const size_t samples = begins.size(), each = group.size() / samples;
         bool even = !first.key.camera && samples > 1;
@@ -184,7 +184,7 @@ bool BakeLog::writeFlat(const std::string& name, const File& f, const OutputPoli
                 d.report(Severity::Error, Rie::Consistency, r.layout->place, has + "; these are left out");
             continue;
         }
-        b.rows.insert(b.rows.end(), f.settled.begin() + long(r.at), f.settled.begin() + long(r.at + rowOf(*r.layout)));
+        b.rows.insert(b.rows.end(), f.committed.begin() + long(r.at), f.committed.begin() + long(r.at + rowOf(*r.layout)));
     }
     return saveBaked(name, b, policy, d, first.place);
 }
@@ -222,7 +222,7 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
     bool several = false; // calls with different channels
     for (const auto& [layout, k] : known) several |= k.fits && k.to.size() < size_t(cloud.width());
     for (const Row& r : f.rows)
-        if (const Known& k = known[r.layout]; k.fits) joined.add(&f.settled[r.at], k.to, several);
+        if (const Known& k = known[r.layout]; k.fits) joined.add(&f.committed[r.at], k.to, several);
     for (const Channel& c : cloud.channels)
         if (const size_t n = joined.counts[size_t(cloud.offsetOf(c.name))]; n < cloud.size())
             d.report(Severity::Warning, Rie::Consistency, order.front()->place,
@@ -233,7 +233,7 @@ bool BakeLog::writeCloud(const std::string& name, const File& f, const OutputPol
 }
 
 bool BakeLog::write(const OutputPolicy& policy, Diagnostics& d, FileOwners owners) {
-    settle();
+    commit();
     bool all = true;
     for (const auto& [name, f] : files_) {
         if (f.notFinite)

@@ -4,12 +4,13 @@
 
 namespace alpenglow::pointcloud {
 
+/// Options of bounce().
 struct BounceOptions {
-    int bounces = 1;
+    int bounces = 1;           ///< how many times light is reflected, >= 1
     std::string albedoChannel; ///< a colour or float; "": the same everywhere, `albedo`
-    Color albedo{.5f};
+    Color albedo{.5f};         ///< reflected fraction of irradiance, linear, 0 to 1
     float maxSolidAngle = .1f; ///< of hemisphere.h
-    int threads = 1;
+    int threads = 1;           ///< threads that compute; the result does not depend on them
 };
 
 /// Each point gets radiosity + albedo times light from the others, `bounces` times, each with the light of the previous one.

@@ -75,7 +75,7 @@ private:
         std::shared_ptr<const PointTree> tree;
         std::list<uint32_t>::iterator use;
     };
-    mutable std::mutex mutex_;
+    mutable std::mutex mutex_; ///< guards the cache of bricks: a brick is the same whenever it is read
     mutable std::map<uint32_t, Kept> kept_;
     mutable std::list<uint32_t> used_; ///< most recently used first
     mutable size_t bytes_ = 0;

@@ -37,14 +37,15 @@ bool meanOf(double weight, std::span<const double> sums, std::span<float> out);
 /// Writes a brick map of a cloud, down to the level with cells as wide as the median disk. Returns false after an error, which is
 /// reported.
 bool saveBrickMap(const std::string& name, const PointCloud&, const OutputPolicy&, Diagnostics&, const SourcePlace& = {});
+/// By its first bytes; false: there is no such file.
 bool isBrickMap(const std::string& path);
 /// The directory of a brick map.
 struct BrickFacts {
-    std::vector<Channel> channels;
+    std::vector<Channel> channels; ///< in the order of the values
     size_t levels = 0, bricks = 0; ///< bricks: of all levels
     uint64_t points = 0;           ///< of the finest level
     Vec3 corner;                   ///< of the cube about the cloud
-    float side = 0;
+    float side = 0;                ///< of that cube, world space
 };
 /// Returns nothing after an error, which is reported.
 std::optional<BrickFacts> brickFacts(const std::string& path, Diagnostics&);

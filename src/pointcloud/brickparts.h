@@ -9,19 +9,21 @@
 
 namespace alpenglow::pointcloud {
 
+/// First bytes of a file, and its version.
 inline constexpr char kBrickMagic[] = "ALPGBRIC";
 inline constexpr uint32_t kBrickVersion = 1;
-inline constexpr size_t kBrickFixed = 44, kBrickEnd = 4, kOfBrick = 32;
-inline constexpr int kBrickLog = 3;
-inline constexpr uint32_t kBrickSide = 1u << kBrickLog; ///< cells
+inline constexpr size_t kBrickFixed = 44, kBrickEnd = 4, kOfBrick = 32; ///< sizes in bytes: header, end mark, directory entry
+inline constexpr int kBrickLog = 3;                                     ///< a brick has 2^kBrickLog cells along a side
+inline constexpr uint32_t kBrickSide = 1u << kBrickLog;                 ///< cells
 
 using BrickPlace = std::array<uint32_t, 4>; ///< level, x, y, z
 
+/// An entry of the directory: where a brick is in space and in the file.
 struct Brick {
-    BrickPlace at;
-    uint32_t points = 0;
-    uint64_t offset = 0;
-    uint32_t crc = 0;
+    BrickPlace at;       ///< level and cell
+    uint32_t points = 0; ///< occupied cells
+    uint64_t offset = 0; ///< of its data, from the start of the file
+    uint32_t crc = 0;    ///< CRC-32 of its data
 };
 
 /// The cell of a coordinate at a level.
@@ -30,6 +32,7 @@ inline uint32_t cellOf(double x, float corner, float side, int depth) {
     const double cell = side > 0 ? (x - double(corner)) / double(side) * cells : 0;
     return uint32_t(std::clamp(cell, 0.0, double(cells - 1)));
 }
+/// The brick that has this cell.
 inline uint32_t brickOf(double x, float corner, float side, int depth) { return cellOf(x, corner, side, depth) / kBrickSide; }
 
 /// The level with cells as wide as the median disk.

@@ -19,6 +19,7 @@ template <class T> T takeNumber(const uint8_t* from) {
     for (size_t i = 0; i < sizeof(T); ++i) v = T(v | T(from[i]) << (8 * i));
     return v;
 }
+/// The same for a float and for three.
 inline void putFloat(std::vector<uint8_t>& to, float f) { putNumber(to, std::bit_cast<uint32_t>(f)); }
 inline float takeFloat(const uint8_t* from) { return std::bit_cast<float>(takeNumber<uint32_t>(from)); }
 inline void putVec(std::vector<uint8_t>& to, const Vec3& v) {

@@ -8,17 +8,17 @@ namespace alpenglow::pointcloud {
 
 /// Lengths and directions in the space of the cloud; angles in radians.
 struct HemisphereQuery {
-    Vec3 P, N;                 ///< N: unit
-    float cone = 1.57079633f;  ///< half angle about N
-    Vec3 axis;                 ///< only directions towards it; 0: all
-    bool uniform = false;      ///< directions count alike, else by the cosine
-    float maxDistance = 1e38f; ///< ignores farther points
-    float bias = 0;            ///< ignores nearer points
-    float maxSolidAngle = .1f; ///< steradians: a cluster that looks larger is taken apart
-    bool clamp = true;         ///< multiple coverage of a pixel counts once
-    bool sort = false;         ///< nearer fragments hide farther ones
-    DiskSides sides = DiskSides::Both;
-    bool colours = true; ///< light is wanted
+    Vec3 P, N;                         ///< N: unit
+    float cone = 1.57079633f;          ///< half angle about N
+    Vec3 axis;                         ///< only directions towards it; 0: all
+    bool uniform = false;              ///< directions count alike, else by the cosine
+    float maxDistance = 1e38f;         ///< ignores farther points
+    float bias = 0;                    ///< ignores nearer points
+    float maxSolidAngle = .1f;         ///< steradians: a cluster that looks larger is taken apart
+    bool clamp = true;                 ///< multiple coverage of a pixel counts once
+    bool sort = false;                 ///< nearer fragments hide farther ones
+    DiskSides sides = DiskSides::Both; ///< which sides of disks emit and occlude
+    bool colours = true;               ///< light is wanted
     /// Attenuation by distance: exp(-fall d), or (1 - d / maxDistance)^fall.
     float fall = 0;
     bool polynomial = false;

@@ -73,7 +73,7 @@ private:
     PointTree whole_;
     Vec3 corner_;
     float side_ = 0;
-    mutable std::array<Level, kDeepest> levels_;
+    mutable std::array<Level, kDeepest> levels_; ///< a cache: each is made once, whoever asks first
 };
 
 } // namespace

@@ -26,23 +26,25 @@ public:
     using Harmonics = std::array<float, 9>;
     /// A cluster of points, and what it looks like from afar.
     struct Node {
-        Vec3 centre;                   ///< mean by area
-        float reach = 0;               ///< largest distance of its disks from the centre
-        float area = 0;                ///< of all
-        Color power;                   ///< area times light, of all
-        Harmonics seen;                ///< of disks: projected area of their front sides
-        std::array<Harmonics, 3> sent; ///< the same times light
-        float ball = 0;                ///< area of balls
-        Color ballPower;
+        Vec3 centre;                      ///< mean by area
+        float reach = 0;                  ///< largest distance of its disks from the centre
+        float area = 0;                   ///< of all
+        Color power;                      ///< area times light, of all
+        Harmonics seen;                   ///< of disks: projected area of their front sides
+        std::array<Harmonics, 3> sent;    ///< the same times light
+        float ball = 0;                   ///< area of balls
+        Color ballPower;                  ///< sum over balls of area times radiosity
         uint32_t begin = 0, end = 0;      ///< points
         uint32_t first = 0, children = 0; ///< nodes; none: a leaf
     };
     /// `lightChannel`: a color or float; "": none. Excludes points without area, and those with absurdly large area.
     PointOctree(const PointCloud&, const std::string& lightChannel);
     const std::vector<Node>& nodes() const { return nodes_; } ///< the root first; none: no points
+    /// In the order of the leaves.
     const std::vector<Point>& points() const { return points_; }
     size_t leftOut() const { return leftOut_; } ///< points
     bool lit() const { return lit_; }           ///< the channel exists
+    /// Memory.
     size_t bytes() const { return points_.size() * sizeof(Point) + nodes_.size() * sizeof(Node); }
     /// Projected area of a node in direction `towards` (unit), and the light that it sends there.
     static float seenFrom(const Node&, const Vec3& towards, DiskSides, Color* sent);

@@ -17,17 +17,18 @@ inline int sizeOf(ChannelType t) { return t == ChannelType::Float ? 1 : t == Cha
 
 /// A named value of every point.
 struct Channel {
-    std::string name;
-    ChannelType type = ChannelType::Float;
+    std::string name;                      ///< as in the file
+    ChannelType type = ChannelType::Float; ///< how many floats a value has
     bool operator==(const Channel&) const = default;
 };
 
 /// Points in memory, each with a value for every channel.
 struct PointCloud {
-    std::vector<Channel> channels;
-    std::vector<Vec3> P, N;    ///< N: unit, or 0 where a point is a ball and no disk
-    std::vector<float> radius; ///< of the disk or the ball
-    std::vector<float> values; ///< width() a point
+    std::vector<Channel> channels; ///< in the order of the values of a point
+    std::vector<Vec3> P, N;        ///< N: unit, or 0 where a point is a ball and no disk
+    std::vector<float> radius;     ///< of the disk or the ball
+    std::vector<float> values;     ///< width() a point
+    /// Number of points.
     size_t size() const { return P.size(); }
     int width() const; ///< numbers of the channels of one point
     /// Index of a channel's first number; -1: no such channel.

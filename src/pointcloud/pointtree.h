@@ -8,8 +8,10 @@ namespace alpenglow::pointcloud {
 class PointTree {
 public:
     PointTree() = default;
+    /// Sorts the points of the cloud.
     explicit PointTree(PointCloud);
     const PointCloud& cloud() const { return cloud_; } ///< in the order of the tree
+    /// Largest radius of a point; 0: no points.
     float largest() const { return nodes_.empty() ? 0 : nodes_[0].radius; }
     /// Adds the points that count for a query: weights to *weight, weight times values to sums. See CloudMap::lookup().
     void gather(const Query&, double* weight, std::span<double> sums) const;

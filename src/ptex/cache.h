@@ -11,14 +11,15 @@ namespace alpenglow::ptex {
 /// A cache in parts, each with its own lock. The parts drop what was used longest ago.
 class Cache {
 public:
+    /// bytes: most memory of all images together.
     explicit Cache(size_t bytes) : most_(bytes) {}
-    using Ref = std::shared_ptr<const Image>;
-    static constexpr uint32_t kWhole = ~0u, kTable = ~1u;
+    using Ref = std::shared_ptr<const Image>;             ///< an image stays alive while somebody holds it
+    static constexpr uint32_t kWhole = ~0u, kTable = ~1u; ///< for Key::tile: the complete face, or the table of its tiles
     /// A face of a file at a resolution.
     struct Key {
-        uint64_t texture;
+        uint64_t texture; ///< of number()
         uint32_t face;
-        int halvings;
+        int halvings;           ///< how often its sides were halved
         uint32_t tile = kWhole; ///< or kTable
         bool operator==(const Key&) const = default;
     };

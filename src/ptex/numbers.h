@@ -42,6 +42,7 @@ inline uint64_t mostInflated(uint64_t bytes) { return bytes * 1040 + 1024; }
 enum Encoding : uint32_t { kConstant = 0, kZipped = 1, kDifferences = 2, kTiled = 3 };
 /// Bytes of a data block, from the size with its encoding.
 inline uint32_t blockSize(uint32_t header) { return header & 0x3fffffffu; }
+/// The encoding from the same word.
 inline Encoding encodingOf(uint32_t header) { return Encoding(header >> 30); }
 
 } // namespace alpenglow::ptex

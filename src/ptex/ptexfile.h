@@ -32,15 +32,15 @@ struct Face {
 /// Rows of constant v, from v = 0; channels of a pixel are interleaved. For triangles: pixel (i, j) with i + j < n is the
 /// triangle at (i / n, j / n); the others are the inverted triangles, rotated about the centre of the square.
 struct Image {
-    int u = 1, v = 1;
-    std::vector<float> values;
+    int u = 1, v = 1;          ///< pixels along u and v
+    std::vector<float> values; ///< rows of pixels
 };
 
 /// A level of a face that is read piece by piece: equal rectangles, row by row.
-struct Tiles : Image {        ///< sides of the level; no values
-    int tu = 0, tv = 0;       ///< logarithms of the sides of a piece
-    std::vector<uint64_t> at; ///< file position of each
-    std::vector<uint32_t> headers;
+struct Tiles : Image {             ///< sides of the level; no values
+    int tu = 0, tv = 0;            ///< logarithms of the sides of a piece
+    std::vector<uint64_t> at;      ///< file position of each
+    std::vector<uint32_t> headers; ///< bytes of its header, by tile
     /// Index of the tile that contains a pixel, and of the pixel in it.
     uint32_t numberOf(int i, int j) const { return uint32_t(j >> tv) * uint32_t(u >> tu) + uint32_t(i >> tu); }
     size_t within(int i, int j) const { return (size_t(j & ((1 << tv) - 1)) << tu) + size_t(i & ((1 << tu) - 1)); }
@@ -48,23 +48,24 @@ struct Tiles : Image {        ///< sides of the level; no values
 
 /// An entry of the metadata.
 struct Meta {
-    std::string key;
-    uint8_t type = 0; ///< 0 text, 1 to 3 integers of 1, 2, 4 bytes, 4 float, 5 double
-    std::vector<uint8_t> bytes;
+    std::string key;            ///< as in the file
+    uint8_t type = 0;           ///< 0 text, 1 to 3 integers of 1, 2, 4 bytes, 4 float, 5 double
+    std::vector<uint8_t> bytes; ///< as in the file, little-endian
 };
 
 /// What holds for the whole file.
 struct Head {
-    Mesh mesh = Mesh::Quad;
-    Number number = Number::Byte;
-    int channels = 3, alpha = -1; ///< alpha: its channel, or none
-    Border uBorder = Border::Clamp, vBorder = Border::Clamp;
-    std::vector<Face> faces;
-    std::vector<Meta> metas;
+    Mesh mesh = Mesh::Quad;                                  ///< shape of the faces
+    Number number = Number::Byte;                            ///< how the file stores values
+    int channels = 3, alpha = -1;                            ///< alpha: its channel, or none
+    Border uBorder = Border::Clamp, vBorder = Border::Clamp; ///< at the edges of the mesh
+    std::vector<Face> faces;                                 ///< by index
+    std::vector<Meta> metas;                                 ///< in their order
 };
 
 /// Faces of any number of files, those that were looked at last; bounded. Thread safe.
 class Cache;
+/// bytes: most memory of all its faces.
 std::shared_ptr<Cache> makeCache(size_t bytes);
 
 /// A file that is open. Thread safe.

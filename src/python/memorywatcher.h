@@ -12,19 +12,21 @@ namespace alpenglow::python {
 /// One picture of a frame, as its display driver gets it: after filter, exposure and imager, before the quantiser, and without
 /// the curve of sRGB that PNG and JPEG get when nobody asked for it.
 struct KeptPicture {
+    /// Consecutive channels of the image that form one value.
     struct Variable {
-        std::string name; ///< as the display's mode has it: "rgb", "a", "z", "N"
-        int first = 0, count = 0;
+        std::string name;         ///< as the display's mode has it: "rgb", "a", "z", "N"
+        int first = 0, count = 0; ///< index of the first channel, and their number
     };
-    std::string name, type; ///< of the Display
-    int frame = 0;          ///< number of the FrameBegin; 0: a world without one
-    int width = 0, height = 0;
-    render::Window window; ///< that the image covers in the whole picture
-    float pixelAspect = 1;
-    std::vector<Variable> variables;
-    display::Image image;
+    std::string name, type;          ///< of the Display
+    int frame = 0;                   ///< number of the FrameBegin; 0: a world without one
+    int width = 0, height = 0;       ///< of the image, in pixels
+    render::Window window;           ///< that the image covers in the whole picture
+    float pixelAspect = 1;           ///< width divided by height of a pixel
+    std::vector<Variable> variables; ///< in the order of the channels
+    display::Image image;            ///< the pixels
 };
 
+/// Keeps pictures and progress of frames for Python.
 class MemoryWatcher final : public render::Watcher {
 public:
     /// writes: displays write their files, too. keeps: pictures are kept; else only the progress is. grows: grown() is asked.
@@ -42,8 +44,8 @@ public:
     /// The first picture of the frame as it is by now, if it has grown since the last call. Any thread.
     std::optional<KeptPicture> grown();
     struct Progress {
-        render::ProgressState state;
-        std::string what;
+        render::ProgressState state; ///< counts and times
+        std::string what;            ///< the stage, for people
     };
     /// The latest progress, if there is any since the last call. Any thread.
     std::optional<Progress> latest();

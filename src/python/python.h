@@ -10,6 +10,7 @@
 
 namespace alpenglow::python {
 
+/// As pybind11's documentation abbreviates it.
 namespace py = pybind11;
 
 /// Wrong use: alpenglow.Error in Python.
@@ -30,8 +31,9 @@ py::dict messageDict(const Diagnostic&);
 /// Collects what is reported by any thread; Python gets it when this thread asks for it.
 class Messages {
 public:
+    /// With nothing waiting.
     Messages();
-    Diagnostics diagnostics;
+    Diagnostics diagnostics; ///< where threads report
     /// Calls receiver(dict) for each message that has come since. What it raises passes through; later messages stay for the
     /// next call.
     void deliver(const py::object& receiver);

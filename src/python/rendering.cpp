@@ -71,7 +71,7 @@ py::dict renderScenes(std::vector<std::string> flags, const py::list& given, boo
             for (const Scene& s : scenes)
                 if (!stop) readScene(s, reader, renderer, a.settings, options);
         } catch (const std::bad_alloc&) { memory = true; }
-        renderer.settle();
+        renderer.waitForFrames();
         renderer.finish();
         renderer.writeStats();
     };

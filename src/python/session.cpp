@@ -172,7 +172,7 @@ void Session::procedural(const py::object& make, const py::object& boundGiven, c
     if (raised_) std::rethrow_exception(std::exchange(raised_, nullptr));
 }
 
-void Session::readArchive(const std::string& name, const py::object& heard, const std::string& file, int line) {
+void Session::readArchive(const std::string& name, const py::object& take, const std::string& file, int line) {
     const Use use(*this);
     if (ended_) return fault(int(Rie::NotStarted), "ReadArchive after End", file, line);
     ri::Call call;
@@ -186,7 +186,7 @@ void Session::readArchive(const std::string& name, const py::object& heard, cons
         const py::gil_scoped_acquire held;
         if (raised_) return;
         try {
-            heard(kind, text);
+            take(kind, text);
         } catch (py::error_already_set&) { raised_ = std::current_exception(); }
     };
     const auto quiet = [&] { interpreter().settings.comments = {}; };
@@ -254,7 +254,7 @@ void Session::end(const std::string& file, int line) {
     perform(true, [&] {
         interpreter().finish({file, line, 0}); // closes what is open
         interpreter().endPrograms();
-        rendering_->renderer->settle();
+        rendering_->renderer->waitForFrames();
         rendering_->renderer->finish();
         rendering_->renderer->writeStats();
     });

@@ -29,7 +29,7 @@ public:
     /// Procedural by a function of Python, at once: make(detail), with the graphics state saved before and restored after.
     void procedural(const py::object& make, const py::object& bound, const std::string& file, int line);
     /// ReadArchive, whose comments go to heard(kind, text).
-    void readArchive(const std::string& name, const py::object& heard, const std::string& file, int line);
+    void readArchive(const std::string& name, const py::object& take, const std::string& file, int line);
     /// RiArchiveRecord: "comment", "structure" and "verbatim".
     void record(const std::string& kind, const std::string& text, const std::string& file, int line);
     /// RiTransformPoints: n points of three numbers each, from one space to another; None where one is not known.
@@ -39,10 +39,15 @@ public:
     /// Reports a fault of the caller.
     void fault(int code, const std::string& message, const std::string& file, int line);
 
+    /// The pictures kept since the last call, as pictureDict() has them; empty when RIB is written.
     py::list pictures();
+    /// Figures of the last frame as JSON (docs/statistics.md); "{}" where there are none.
     std::string stats() const;
+    /// As the exit status of `alpenglow render`.
     int status() const;
+    /// RIB is written; nothing is rendered.
     bool writing() const { return rendering_ == nullptr; }
+    /// Sets what is called with each message; None: they are dropped.
     void setMessage(py::object m) { message_ = std::move(m); }
 
 private:

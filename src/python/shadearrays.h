@@ -11,24 +11,26 @@ namespace alpenglow::python {
 /// Numbers for every point, or one value for all.
 struct PointRows {
     std::vector<float> numbers; ///< point after point, `width` each; of one value `width`
-    int width = 1;
-    bool each = false; ///< a value for each point
+    int width = 1;              ///< numbers of one value
+    bool each = false;          ///< a value for each point
 };
 
+/// What to run a shader on.
 struct ShadeRequest {
-    size_t points = 0;
+    size_t points = 0;                           ///< number of points
     std::map<std::string, PointRows> variables;  ///< predefined ones: "P", "N", "u", "dPdu" ...
     std::map<std::string, PointRows> parameters; ///< of the shader, numbers
     std::map<std::string, std::string> strings;  ///< parameters that are strings
     std::vector<std::string> outputs;            ///< empty: what the kind of shader gives
     std::vector<std::string> searchPaths;        ///< for maps
-    int lanes = 16;
-    bool allowExec = false;
+    int lanes = 16;                              ///< of the kernel: 4, 8 or 16; results do not depend on it
+    bool allowExec = false;                      ///< shaders may run programs
 };
 
+/// One output of the shader at all points.
 struct ShadeOutput {
-    std::string name;
-    int width = 1;
+    std::string name;           ///< of the output variable
+    int width = 1;              ///< numbers of a value
     std::vector<float> numbers; ///< point after point
 };
 

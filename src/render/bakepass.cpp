@@ -64,9 +64,11 @@ bool noneBakes(Job& job, uint32_t shape, const std::vector<shading::GridPoint>& 
             numbers.push_back(int(i));
             ++n;
         }
-    world::noteLightsOfBakes(*job.world);
+    const std::vector<uint64_t> before = job.counters().lightRuns;
     const bool whole = tracePoints(job, few, numbers, 1, pixel), none = !world::bakedNow(*job.world);
-    const bool lit = world::bakingLightsRan(*job.world, shape);
+    std::vector<uint64_t> runs = job.counters().lightRuns; // of these points: few decide only for lights that ran there
+    for (size_t i = 0; i < before.size(); ++i) runs[i] -= before[i];
+    const bool lit = world::bakingLightsRan(*job.world, shape, runs);
     world::commitBakes(*job.world, false);
     return whole && none && lit;
 }

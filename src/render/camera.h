@@ -18,6 +18,7 @@ namespace alpenglow::render {
 class Aperture {
 public:
     Aperture() = default;
+    /// As above.
     Aperture(int sides, double degrees, double roundness, double density);
     /// Samples a point in proportion to the light through the aperture, from two numbers in [0, 1).
     Vec2 sample(Vec2) const;
@@ -33,6 +34,7 @@ private:
 /// grid on the lens, equal in all pixels. 1 by 1: a pinhole.
 struct LensGrid {
     int x = 0, y = 0; ///< 0: PixelSamples sets the number of rays, each with its own lens position
+    /// There is a grid.
     bool on() const { return x > 0; }
 };
 /// Empty under other hiders, or if the numbers are not counts (the camera reports that).
@@ -48,14 +50,18 @@ public:
     Camera(const scene::Options&, Diagnostics&);
 
     int width() const { return width_; } ///< of the complete picture, pixels
+    /// Pixels.
     int height() const { return height_; }
+    /// Width divided by height of a pixel.
     float pixelAspect() const { return pixelAspect_; }
     /// The pixels of CropWindow.
     const Window& window() const { return window_; }
     /// From DepthOfField, or from Hider "raytrace" "lensDiameter".
     bool hasLens() const { return lensRadius_ > 0; }
+    /// Of Hider "raytrace"; off for others.
     const LensGrid& lensGrid() const { return lensGrid_; }
     bool stereo() const { return stereo_ != Stereo::None; } ///< a stereo pair, or one picture of it
+    /// In the units of Shutter.
     double shutterOpen() const { return shutter_.open; }
     double shutterClose() const { return shutter_.close; }
 

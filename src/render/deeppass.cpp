@@ -13,7 +13,7 @@ struct Row {
 };
 
 display::DeepChange change(const integrator::DepthStep& s, const Color& before) {
-    return {s.z, {before.x, before.y, before.z}, {s.left.x, s.left.y, s.left.z}};
+    return {s.z, {before.x, before.y, before.z}, {s.transmittance.x, s.transmittance.y, s.transmittance.z}};
 }
 
 class DepthLoop {
@@ -55,9 +55,9 @@ bool DepthLoop::row(int worker, int y, Row& out) {
         if (!job_.trace(worker, rays, results)) return false;
         for (const integrator::SampleResult& r : results) {
             Color before(1);
-            for (const integrator::DepthStep& s : r.left) {
+            for (const integrator::DepthStep& s : r.transmittance) {
                 changes.push_back(change(s, before));
-                before = s.left;
+                before = s.transmittance;
             }
             if (++begun % samples == 0) finish();
         }

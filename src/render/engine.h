@@ -23,8 +23,10 @@ public:
 
 /// The pair.
 struct Engine {
+    /// As World::build().
     std::function<std::shared_ptr<const world::World>(std::shared_ptr<const scene::Frame>, const world::Settings&, Diagnostics&)>
         build;
+    /// For one thread.
     std::function<std::unique_ptr<Tracer>(std::shared_ptr<const world::World>, Diagnostics&)> tracer;
 };
 

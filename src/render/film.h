@@ -18,6 +18,7 @@ namespace alpenglow::render {
 /// Pixels x0 <= x < x1, y0 <= y < y1 of the raster; y grows downward.
 struct Window {
     int x0 = 0, y0 = 0, x1 = 0, y1 = 0;
+    /// Of the window, in pixels.
     int width() const { return x1 - x0; }
     int height() const { return y1 - y0; }
     size_t pixels() const { return size_t(width()) * size_t(height()); }
@@ -40,8 +41,8 @@ inline bool isSum(ChannelRule r) { return r != ChannelRule::Min && r != ChannelR
 
 /// A channel of the film besides Ci and alpha.
 struct Channel {
-    std::string name;
-    ChannelRule rule = ChannelRule::Average;
+    std::string name;                        ///< name of the output, and of its component
+    ChannelRule rule = ChannelRule::Average; ///< how its samples are joined
     friend bool operator==(const Channel&, const Channel&) = default;
 };
 
@@ -55,9 +56,10 @@ struct SampleRange {
 /// samples; others have n times their rate, in multiples of kReplicas; but at least `base`. The indices follow from these values,
 /// so they suffice to continue a render. At first only pixels with the largest rate get more.
 struct Spread {
-    static constexpr uint16_t kOne = 256, kMost = 8 * kOne;
+    static constexpr uint16_t kOne = 256, kMost = 8 * kOne; ///< the rate 1, and the largest
     uint32_t base = 0, steps = 0;
     std::vector<uint16_t> rates; ///< by pixel of the window, in rows; kOne is 1; at most kMost
+    /// Number of samples of a pixel with rate 1 after so many steps.
     uint64_t ofOne(uint64_t after) const { return base / 8 + kReplicas * after; }
     /// Samples 0 <= index < held() of pixel i are in the film, after so many steps.
     uint64_t held(size_t i, uint64_t after) const {
@@ -69,9 +71,9 @@ struct Spread {
 
 /// Identity of a render: films are parts of one render only if all of this is equal.
 struct FilmDescription {
-    int width = 0, height = 0; ///< of the whole picture, pixels
-    Window window;             ///< the crop window; must lie inside the picture
-    uint64_t seed = 0;
+    int width = 0, height = 0;     ///< of the whole picture, pixels
+    Window window;                 ///< the crop window; must lie inside the picture
+    uint64_t seed = 0;             ///< of all random numbers
     std::string scene;             ///< a digest of the scene and of every option that changes the picture; chosen by the caller
     std::vector<Channel> channels; ///< AOVs
     /// For pixel filters with weighted samples (FilterSampler::negativePart()): integral of the negative part over the integral
@@ -83,8 +85,8 @@ struct FilmDescription {
 
 /// One sample of one pixel. Linear, unclamped.
 struct FilmSample {
-    Color radiance;
-    float alpha = 0;
+    Color radiance;              ///< premultiplied
+    float alpha = 0;             ///< 0 to 1
     std::span<const float> aovs; ///< one value per channel; missing ones count as 0
     bool surface = true;         ///< the camera ray hit a surface of any opacity; false: background only
     float weight = 1;            ///< of the pixel filter: multiplies radiance, alpha and averaged AOVs, not the noise figures
@@ -105,11 +107,12 @@ struct Moments {
 
 /// Luminance of a pixel's samples, of one sign if they have weights, and of those that hit a surface.
 struct LuminanceSums {
-    double scale = 1; ///< factor of this sum in the pixel's value
-    std::array<double, kReplicas> y{};
-    std::array<uint32_t, kReplicas> count{};
-    double surfaceY = 0;
-    std::array<uint32_t, kReplicas> surfaceCount{};
+    double scale = 1;                               ///< factor of this sum in the pixel's value
+    std::array<double, kReplicas> y{};              ///< by replica: sum, and number of samples
+    std::array<uint32_t, kReplicas> count{};        ///< number of samples, by replica
+    double surfaceY = 0;                            ///< sum over samples that hit a surface
+    std::array<uint32_t, kReplicas> surfaceCount{}; ///< their number, by replica
+    /// Sums over the replicas.
     uint32_t samples() const { return std::accumulate(count.begin(), count.end(), 0u); }
     uint32_t onSurface() const { return std::accumulate(surfaceCount.begin(), surfaceCount.end(), 0u); }
     double sum() const { return std::accumulate(y.begin(), y.end(), 0.0); }
@@ -134,6 +137,7 @@ public:
     /// False with an error reported when sizes or channel counts are beyond the limits or the window is outside the picture.
     static bool check(const FilmDescription&, Diagnostics&, const SourcePlace& = {});
 
+    /// As it was constructed.
     const FilmDescription& description() const { return description_; }
     const Window& window() const { return description_.window; }
 
@@ -160,8 +164,9 @@ public:
     /// Samples per pixel: mean, smallest and largest.
     struct Samples {
         double mean = 0;
-        uint64_t least = 0, most = 0;
+        uint64_t least = 0, most = 0; ///< smallest and largest
     };
+    /// Of all pixels of the window.
     Samples samples() const { return samplesAfter(0); }
     /// The same, after so many further steps.
     Samples samplesAfter(uint32_t steps) const;

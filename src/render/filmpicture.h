@@ -25,9 +25,9 @@ bool writeFilm(const Film&, const OutputPlan&, PictureFacts, const Imager&, bool
 enum class MergeResult { Done, NoInput, NoOutput };
 /// Permissions for merging, and the first search path for the imager's shaders; the parts hold the search paths of their renders.
 struct MergeSettings {
-    bool allowWrite = false, allowExec = false;
-    std::vector<std::string> shaderPaths;
-    std::optional<SampleRange> expect; ///< samples that the parts must hold together, exactly
+    bool allowWrite = false, allowExec = false; ///< as OutputPolicy::allowWrite; imagers may run programs
+    std::vector<std::string> shaderPaths;       ///< before those of the parts
+    std::optional<SampleRange> expect;          ///< samples that the parts must hold together, exactly
 };
 /// Adds the films of part files (a picture stands for its sidecar) and writes what a single render of all their samples would
 /// have written: `output` with its sidecars, or the pictures named in the parts if it is empty. Uses the imager of the first

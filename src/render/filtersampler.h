@@ -21,6 +21,7 @@ struct FilterSample {
 /// A filter prepared for sampling. Immutable.
 class FilterSampler {
 public:
+    /// The filter's values may be negative.
     explicit FilterSampler(const PixelFilter&);
     /// u: two numbers in [0, 1). Continuous in u within each sign of the filter, so that stratified numbers stay stratified.
     FilterSample sample(Vec2 u) const;
@@ -33,6 +34,7 @@ public:
     bool degenerate() const { return degenerate_; }
     /// Integral of the filter's negative part over that of the filter; unset if all samples have weight 1.
     std::optional<double> negativePart() const;
+    /// As given to the constructor.
     const PixelFilter& filter() const { return filter_; }
 
 private:

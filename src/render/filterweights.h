@@ -9,10 +9,12 @@ namespace alpenglow::render {
 /// A filter interpolated linearly between exact values. Its support is exact.
 class FilterWeights {
 public:
+    /// Tabulates the filter.
     explicit FilterWeights(const PixelFilter&);
     /// Largest error of a weight, relative to the filter's maximum: half of it for each axis.
     static constexpr double kError = 2e-6;
 
+    /// The filter.
     const PixelFilter& filter() const { return filter_; }
     /// The filter at (x, y), in pixels from its centre.
     float operator()(double x, double y) const;

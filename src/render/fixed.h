@@ -17,6 +17,7 @@ inline double fromFixed(Int128 v) { return alpenglow::fromFixed<kFixedBits>(v); 
 struct UInt256 {
     uint64_t limb[4] = {0, 0, 0, 0};
 
+    /// Modulo 2^256.
     UInt256& operator+=(const UInt256& o) {
         uint64_t carry = 0;
         for (int i = 0; i < 4; ++i) {

@@ -58,7 +58,7 @@ void FrameProcesses::say(const Diagnostic& d) {
     if (process_) return send(Kind::Message, packed(d));
     if (parts_.empty() || (!open_ && parts_.back().process >= 0) || parts_.back().result) parts_.emplace_back();
     parts_.back().events.push_back({Kind::Message, packed(d)});
-    tell();
+    printMessages();
 }
 
 void FrameProcesses::openFrame() {
@@ -66,17 +66,17 @@ void FrameProcesses::openFrame() {
     while (running() >= use_.most || parts_.size() >= size_t(limits::kFramesAhead) * size_t(use_.most)) serve(kLook);
     parts_.emplace_back();
     open_ = true;
-    tell();
+    printMessages();
 }
 
 void FrameProcesses::closeFrame() {
     open_ = false;
-    tell();
+    printMessages();
 }
 
-void FrameProcesses::settle() {
+void FrameProcesses::waitForFrames() {
     while (running() > 0) serve(kLook);
-    tell();
+    printMessages();
 }
 
 bool FrameProcesses::start(const std::string& what, Writes writes, bool alone) {
@@ -141,7 +141,7 @@ void FrameProcesses::serve(int milliseconds) {
         if (fds[i].revents) readFrom(*of[i], fds[i].fd == of[i]->error);
     for (Part* p : of) reap(*p);
     answerAll();
-    tell();
+    printMessages();
 }
 
 void FrameProcesses::readFrom(Part& p, bool error) {
@@ -182,7 +182,7 @@ void FrameProcesses::split(Part& p) {
 
 void FrameProcesses::take(Part& p, Kind kind, std::string bytes) {
     if (kind == Kind::Result) p.result = unpack(bytes, p.made);
-    if (kind == Kind::Declare) p.writes.settled = true, p.writes.others |= bytes == "+";
+    if (kind == Kind::Declare) p.writes.declared = true, p.writes.others |= bytes == "+";
     if (kind == Kind::Ask) p.asks = true, p.asked = bytes;
     if (kind == Kind::Message) p.events.push_back({kind, std::move(bytes)});
 }
@@ -225,7 +225,7 @@ bool FrameProcesses::mayRead(size_t part, const std::string& name) const {
     const std::string base = baseOf(name);
     return std::none_of(parts_.begin(), parts_.begin() + std::ptrdiff_t(part), [&](const Part& p) {
         if (p.process < 0) return false;
-        if (name.empty() || !p.writes.settled || p.writes.others) return true;
+        if (name.empty() || !p.writes.declared || p.writes.others) return true;
         return std::any_of(p.writes.files.begin(), p.writes.files.end(),
                            [&](const std::string& file) { return baseOf(file) == base; });
     });
@@ -258,7 +258,7 @@ void FrameProcesses::writeOut(const std::string& bytes) {
                                         {}});
 }
 
-void FrameProcesses::tellEvent(const Event& e) {
+void FrameProcesses::printEvent(const Event& e) {
     if (e.kind == Kind::Text) writeOut(e.bytes);
     if (e.kind == Kind::Error) std::fwrite(e.bytes.data(), 1, e.bytes.size(), stderr);
     Diagnostic d;
@@ -269,11 +269,11 @@ void FrameProcesses::tellEvent(const Event& e) {
 }
 
 /// Prints what is due: all finished parts, and what exists of the first unfinished one.
-void FrameProcesses::tell() {
+void FrameProcesses::printMessages() {
     while (!parts_.empty()) {
         Part& p = parts_.front();
         if (!p.begun) p.errors = messages_.errors(), p.warnings = messages_.warnings(), p.begun = true;
-        for (const Event& e : std::exchange(p.events, {})) tellEvent(e);
+        for (const Event& e : std::exchange(p.events, {})) printEvent(e);
         if (p.process >= 0 || (open_ && parts_.size() == 1)) return;
         if (p.result && p.made.stats) {
             p.made.stats->figures.errors = messages_.errors() - p.errors;

@@ -33,7 +33,7 @@ public:
     struct Writes {
         std::vector<std::string> files; ///< known names
         bool others = false;            ///< and files of names that are not known
-        bool settled = false;           ///< `others` is known; false: the process will declare it
+        bool declared = false;          ///< `others` is known; false: the process will declare it
     };
     using Take = std::function<void(FrameResult)>;
 
@@ -44,8 +44,10 @@ public:
     FrameProcesses(const FrameProcesses&) = delete;
     FrameProcesses& operator=(const FrameProcesses&) = delete;
 
+    /// Frames that are rendered at a time.
     int most() const { return use_.most; }
     bool inProcess() const { return process_; } ///< this process was forked by start()
+    /// Of this frame.
     const Diagnostics& messages() const { return messages_; }
     /// Sets the receiver of each frame's result, in frame order, after its messages have been printed.
     void setTake(Take t) { take_ = std::move(t); }
@@ -57,12 +59,12 @@ public:
     /// Waits until another process may render. Later messages belong to the next frame.
     void openFrame();
     /// Forks the process. what: names the frame in messages. alone: no other process renders; openFrame() must have been called
-    /// after settle(). Throws std::system_error if no process can be made.
+    /// after waitForFrames(). Throws std::system_error if no process can be made.
     bool start(const std::string& what, Writes, bool alone);
     /// Later messages belong to the reader again.
     void closeFrame();
     /// Waits until all frames are rendered and their messages printed.
-    void settle();
+    void waitForFrames();
 
     // --- in either ---
     /// Call before looking for a file of this name: waits for earlier frames that may write it. In a rendering process callable
@@ -108,8 +110,8 @@ private:
     void answerAll();
     bool mayRead(size_t part, const std::string& name) const;
     void writeOut(const std::string& bytes);
-    void tell();
-    void tellEvent(const Event&);
+    void printMessages();
+    void printEvent(const Event&);
     void send(Kind, const std::string& bytes);
     void await(const std::string& asked);
 

@@ -11,17 +11,17 @@ struct FrameStats {
     int frame = 0;                ///< number of its FrameBegin; 0: a world outside of frames
     std::string scene, sceneHash; ///< the file; provenance.h
     std::string hider;            ///< "path"
-    uint64_t seed = 0;
+    uint64_t seed = 0;            ///< of all random numbers
     /// A picture that was written.
     struct Picture {
-        std::string file, type;
-        std::vector<std::string> channels;
+        std::string file, type;            ///< file name; display type
+        std::vector<std::string> channels; ///< in the order of the file
     };
     std::vector<Picture> pictures; ///< those written
     /// A map that was read.
     struct Texture {
-        std::string file;
-        uint64_t fileBytes = 0, memoryBytes = 0, scratchBytes = 0;
+        std::string file;                                          ///< of the file
+        uint64_t fileBytes = 0, memoryBytes = 0, scratchBytes = 0; ///< on disk; in memory; in a scratch file
     };
     std::vector<Texture> textures; ///< maps read, by name
     RenderStats figures;           ///< of this frame only

@@ -13,7 +13,8 @@ namespace alpenglow::render {
 
 namespace {
 
-constexpr uint32_t kGuidePilot = 0xfffffffeu, kLearned = 0xfffffffdu; ///< numbers of photon passes, distinct from others
+constexpr uint32_t kGuidePilot = 0xfffffffeu, kLearned = 0xfffffffdu, kSeedPilot = 0xfffffff8u,
+                   kSeeds = 0xfffffff7u; ///< numbers of photon passes, distinct from others
 constexpr uint32_t kMostTurns = 4;
 constexpr uint64_t kOtherSeed = 0x6775696465ull; ///< makes the guide independent of the picture's own samples
 
@@ -70,6 +71,7 @@ void forgetLearned(Job& job) {
     world::PhotonStore* const store = job.world->photons();
     if (!store) return;
     store->guide.reset();
+    store->seeds.reset();
     store->lightGuides.clear();
     store->leastLight = 0;
 }
@@ -99,6 +101,51 @@ bool learnCaustics(Job& job) {
     for (world::StoredPhoton& s : all) s.photon.power /= float(turns);
     const float brightness = brightnessOf(job);
     job.guide = world::guideCaustics(*job.world, all, passes.emission().power(), brightness);
+    job.world->flushPrints(false);
+    return !job.pollStop();
+}
+
+bool learnSeeds(Job& job) {
+    constexpr size_t kFewest = 32, kEnough = 512, kMost = 1u << 15;
+    constexpr double kLeast = 1e-5; ///< fraction of all light
+    const scene::Options& o = job.world->frame().options;
+    world::PhotonStore* const store = job.world->photons();
+    if (refused(o) || !store || !world::mayHaveCaustics(*job.world)) return true;
+    Diagnostics silent;
+    const integrator::PhotonUse use{.all = true, .sky = false, .caustics = true, .width = 0, .learns = true, .unmet = true};
+    PhotonPasses passes(job, job.world, use, silent);
+    if (!passes.emission().lights()) return true;
+    std::vector<world::StoredPhoton> found;
+    const auto take = [&](uint32_t, std::vector<world::StoredPhoton> stored) { found = std::move(stored); };
+    const double pixels = double(std::max(o.xres, 1)) * double(std::max(o.yres, 1));
+    auto pilot = uint32_t(std::clamp(pixels / 4, double(1u << 12), double(1u << 14)));
+    if (!passes.emit(kSeedPilot, 1, pilot, limits::kPhotonsAtRest, take)) return false;
+    uint32_t pass = kSeedPilot;
+    if (found.size() < kEnough) { // small mirrors, or small surfaces that they light
+        pilot *= 8, --pass;
+        if (!passes.emit(pass, 1, pilot, limits::kPhotonsAtRest, take)) return false;
+    }
+    if (found.empty()) return true;
+    std::vector<world::CausticSeed> seeds;
+    passes.emission().addSeeds(found, pass, seeds, silent);
+    passes.emission().learn(found, pass, pilot);
+    const auto photons = uint32_t(std::clamp(pixels / 2, double(1u << 13), double(1u << 16)));
+    if (!passes.emit(kSeeds, 1, photons, kMost, take)) return false;
+    const size_t before = seeds.size();
+    passes.emission().addSeeds(found, kSeeds, seeds, silent);
+    double power = 0;
+    for (size_t i = before; i < seeds.size(); ++i) power += seeds[i].power;
+    for (size_t i = 0; i < seeds.size(); ++i) seeds[i].power *= i < before ? 0 : 1; // both emissions bring all of the light
+    if (!(power > kLeast * passes.emission().power())) return true;
+    const float brightness = seeds.size() < kFewest ? 0 : brightnessOf(job);
+    if (brightness > 0) {
+        // Squared error times time: 2 is best for mirrors and a ball of glass, .5 for a glass of water, whose searches cost 400.
+        constexpr double kGain = 2, kCost = 60;
+        const world::CausticSeeds made(seeds, brightness, float(kGain));
+        const double cost = integrator::costOfSearches(job.world, made, silent);
+        const auto gain = float(kGain * std::min(1., kCost / std::max(cost, 1.)));
+        store->seeds = std::make_shared<const world::CausticSeeds>(std::move(seeds), brightness, gain);
+    }
     job.world->flushPrints(false);
     return !job.pollStop();
 }

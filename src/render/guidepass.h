@@ -9,6 +9,8 @@ void forgetLearned(Job&);
 /// Builds the guide unless the options disable it or photons find no caustics. The guide is equal for all parts, samples and
 /// threads of a picture. Returns false if stopped.
 bool learnCaustics(Job&);
+/// The same for lights that no ray meets: finds where searches for their light by mirrors and glass begin (world/causticseeds.h).
+bool learnSeeds(Job&);
 /// Builds the guides of light samples, likewise.
 bool learnLights(Job&);
 /// Learns how bright the picture is, so that light samples that bring little of it can be left out at random

@@ -46,7 +46,7 @@ private:
     int rowOf(int band) const;
     Window beginBand(const Window& part);
     void band(int b);
-    void tell(double fraction, bool last);
+    void showProgress(double fraction, bool last);
     Done progressOf(int b, double begin, size_t tasks);
     void trace(SampleBuffer&, size_t tasks, const std::function<void(size_t, std::vector<Wanted>&)>& list, const Done&);
     bool traceSlice(SampleBuffer&, int worker, std::span<const Wanted>);
@@ -169,7 +169,7 @@ void ImageLoop::run() {
     if (buffer_) memory_ = std::move(*buffer_).takeMemory();
     if (job_.world) job_.world->flushPrints(true);
     result_.begun = begun_ || !job_.interrupted;
-    tell(job_.interrupted ? reached_ : 1, true);
+    showProgress(job_.interrupted ? reached_ : 1, true);
     job_.halt = 0;
 }
 
@@ -251,7 +251,7 @@ void ImageLoop::grow() {
     });
 }
 
-void ImageLoop::tell(double fraction, bool last) {
+void ImageLoop::showProgress(double fraction, bool last) {
     ProgressState s;
     s.fraction = fraction;
     s.samplesDone = fraction * nx_ * ny_;
@@ -269,7 +269,7 @@ ImageLoop::Done ImageLoop::progressOf(int b, double begin, size_t tasks) {
         show();
         const double steps = refinement_.on() ? 2 : 1;
         reached_ = (b + (begin + double(done) / double(std::max<size_t>(tasks, 1))) / steps) / bands_;
-        tell(reached_, false);
+        showProgress(reached_, false);
     };
 }
 

@@ -12,7 +12,8 @@ Color expose(Color, float gain, float gamma);
 
 /// RiQuantize and the Display parameter "quantize" [zero one min max]. one == zero == 0: floating point output.
 struct QuantizeRule {
-    double zero = 0, one = 0, min = 0, max = 0, dither = 0;
+    double zero = 0, one = 0, min = 0, max = 0, dither = 0; ///< the numbers of the request
+    /// Not quantised.
     bool floating() const { return one == 0 && zero == 0; }
 };
 

@@ -99,9 +99,9 @@ const MatteLoop::Ids& MatteLoop::idsOf(const scene::Attributes* a) {
 void MatteLoop::see(const integrator::SampleResult& sample) {
     seen_.clear();
     Color before(1);
-    for (const integrator::DepthStep& s : sample.left) {
-        const Color hidden = before - s.left;
-        before = s.left;
+    for (const integrator::DepthStep& s : sample.transmittance) {
+        const Color hidden = before - s.transmittance;
+        before = s.transmittance;
         const double share = (double(hidden.x) + double(hidden.y) + double(hidden.z)) / 3;
         if (s.surface && share > 0) seen_.push_back({&idsOf(s.surface), share});
     }

@@ -80,7 +80,7 @@ double noiseBound(double sum, double sumOfSquares, int replicas = int(kReplicas)
 /// the truth whenever both replicas of a binary value agree.
 struct PooledError {
     double mean = 0;
-    double se = 0;
+    double se = 0;  ///< standard error of the mean
     double dof = 0; ///< degrees of freedom of se; 0: unknown
 };
 /// The error of the mean luminance over the pixels of a window that have samples: SE^2 = sum SE_i^2 / N^2, for any errors of the
@@ -94,7 +94,7 @@ PooledError pixelError(const Film&, int x, int y, int radius);
 /// Mean and half width of an interval that contains the true value with the given probability: m +- t SE, t of Student's
 /// distribution. Infinite half width if the error is unknown (fewer than 2 replicas). 0 < level < 1.
 struct Interval {
-    double mean = 0, halfWidth = 0;
+    double mean = 0, halfWidth = 0; ///< m, and t SE
 };
 /// Around the pooled error, by Student's distribution.
 Interval confidenceInterval(const PooledError&, double level = 0.95);

@@ -12,8 +12,8 @@ struct Outcome {
     int refused = 0;           ///< frames without any
     int textures = 0;          ///< Make requests carried out
     bool outputFailed = false; ///< a file could not be written
-    bool outOfMemory = false;
-    bool interrupted = false;
+    bool outOfMemory = false;  ///< memory did not suffice
+    bool interrupted = false;  ///< the user stopped it
     /// Adds those of another run of frames.
     void add(const Outcome& o) {
         rendered += o.rendered;
@@ -27,7 +27,7 @@ struct Outcome {
 
 /// Result of a process for a frame, or for a Make request.
 struct FrameResult {
-    Outcome outcome;
+    Outcome outcome;                 ///< counts of that frame alone
     std::optional<FrameStats> stats; ///< for a rendered frame
     double parseSec = 0;             ///< for other frames
     uint64_t grown = 0;              ///< memory in bytes that its process allocated for it; 0 if allocated at once

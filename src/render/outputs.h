@@ -23,14 +23,14 @@ struct OutputVariable {
     /// These are available under Hider "path" only. Part files store the number.
     enum class Source : int { Ci, Alpha, Z, Oi, Engine, Light, Computed };
     Source source = Source::Ci;
-    Source instead = Source::Engine; ///< meaning of the name if no shader has such an output; Engine: none
-    std::string name;
-    std::string asked; ///< Source::Engine: name of the output in shaders; "": `name`
-    int engine = -1;   ///< Source::Engine: index into OutputPlan::engineOutputs
-    int light = -1;    ///< Source::Light, or `instead` is Light: index into OutputPlan::lights
-    bool typed = true; ///< false: type not declared, the engine's width determines the channels
-    bool color = false;
-    std::vector<std::string> channels;
+    Source instead = Source::Engine;   ///< meaning of the name if no shader has such an output; Engine: none
+    std::string name;                  ///< as the display's mode has it
+    std::string asked;                 ///< Source::Engine: name of the output in shaders; "": `name`
+    int engine = -1;                   ///< Source::Engine: index into OutputPlan::engineOutputs
+    int light = -1;                    ///< Source::Light, or `instead` is Light: index into OutputPlan::lights
+    bool typed = true;                 ///< false: type not declared, the engine's width determines the channels
+    bool color = false;                ///< declared as a color
+    std::vector<std::string> channels; ///< names of its channels in the picture
     /// Whether it is a colour for viewing: Ci, or declared as a color.
     bool shown() const { return source == Source::Ci || (source != Source::Alpha && source != Source::Z && typed && color); }
 };
@@ -42,18 +42,18 @@ std::vector<std::string> computedOutputs();
 
 /// One picture.
 struct OutputSpec {
-    std::string name, type;
-    std::vector<OutputVariable> variables;
-    scene::ParamList params;
-    SourcePlace place;
-    float gain = 1, gamma = 1;
+    std::string name, type;                ///< of the display: file name, type
+    std::vector<OutputVariable> variables; ///< in the order of the mode
+    scene::ParamList params;               ///< of the display
+    SourcePlace place;                     ///< of the request, for messages
+    float gain = 1, gamma = 1;             ///< of Exposure, or of the display
     bool ownExposure = false; ///< the display's own "exposure": applies to all colours; else exposure applies to Ci only
     bool srgb = false;        ///< colours are converted by the sRGB curve, last
     std::string curve;        ///< for the user: the curve and its reason; "" if the picture is not for viewing
     PixelFilter filter;       ///< hidden and raytrace
-    DepthFilter depth = DepthFilter::Min;
-    display::Quantization rgba, z;
-    bool quantizeAsked = false;
+    DepthFilter depth = DepthFilter::Min;  ///< for z
+    display::Quantization rgba, z;         ///< for colours; for z
+    bool quantizeAsked = false;            ///< the display or the scene asks for it
     bool userFile = false;                 ///< by -o or --display: may be in any folder
     bool map = false;                      ///< isMap()
     std::optional<MattesAsked> asksMattes; ///< a "cryptomatte"
@@ -67,18 +67,18 @@ struct OutputSpec {
 
 /// Frame-wide values that affect single pictures; stored in part files so that `merge -o` writes what `render -o` would.
 struct OutputBasis {
-    float gain = 1, gamma = 1;
-    bool gammaGiven = false, srgbAsked = false; ///< by --gamma
-    bool exposureGiven = false;                 ///< by Exposure
-    bool path = false;
-    scene::Quantize rgba{255, 0, 255, 0.5f, false}, z{0, 0, 0, 0, false};
-    PixelFilter filter;
-    DepthFilter depth = DepthFilter::Min;
+    float gain = 1, gamma = 1;                                            ///< of Exposure
+    bool gammaGiven = false, srgbAsked = false;                           ///< by --gamma
+    bool exposureGiven = false;                                           ///< by Exposure
+    bool path = false;                                                    ///< hider is path
+    scene::Quantize rgba{255, 0, 255, 0.5f, false}, z{0, 0, 0, 0, false}; ///< of Quantize
+    PixelFilter filter;                                                   ///< of PixelFilter
+    DepthFilter depth = DepthFilter::Min;                                 ///< of the hider
 };
 
 /// All pictures of a frame, and what the integrator must compute for them.
 struct OutputPlan {
-    OutputBasis basis;
+    OutputBasis basis; ///< common values
     std::vector<OutputSpec> pictures;
     std::vector<std::string> engineOutputs; ///< world::Settings::outputs
     std::vector<int> engineWidths;          ///< floats of each: by displays (0: undeclared), then by resolve() from the shaders
@@ -94,6 +94,7 @@ struct OutputPlan {
     bool needs(OutputVariable::Source) const;
     /// Whether some picture, or every picture, is a deep shadow map.
     bool anyDeep() const, onlyDeep() const;
+    /// Whether some picture is a Cryptomatte; whether some reads depth by this filter.
     bool anyMattes() const;
     bool needsDepth(DepthFilter) const;
     /// Sets the widths from the engine and names the channels of undeclared outputs. `missing`: outputs that no shader has.
@@ -131,11 +132,11 @@ Image filmImage(const Film&, const OutputPlan&, DepthFilter);
 
 /// Properties of a picture other than its pixels.
 struct PictureFacts {
-    int width = 0, height = 0; ///< of the whole picture
-    Window window;
-    float pixelAspect = 1;
-    Matrix worldToCamera, worldToNDC;
-    std::map<std::string, std::string> metadata;
+    int width = 0, height = 0;                        ///< of the whole picture
+    Window window;                                    ///< the crop window
+    float pixelAspect = 1;                            ///< width divided by height of a pixel
+    Matrix worldToCamera, worldToNDC;                 ///< for pictures that store them
+    std::map<std::string, std::string> metadata;      ///< texts for headers, by key
     bool imager = false;                              ///< the frame has an imager shader
     std::shared_ptr<const display::DeepSamples> deep; ///< of deep shadow maps; null: none
 };

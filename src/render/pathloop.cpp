@@ -100,7 +100,7 @@ private:
     uint32_t reached() const;
     uint32_t firstJudged() const;
     void judge();
-    void tell(double inPass, bool last);
+    void showProgress(double inPass, bool last);
     void show(bool grown);
 
     Job& job_;
@@ -150,7 +150,7 @@ PathLoop::PathLoop(Job& job, Film& film, SampleRange wanted, uint64_t seed)
     nextNoise_ = firstJudged();
 }
 
-void PathLoop::tell(double inPass, bool last) {
+void PathLoop::showProgress(double inPass, bool last) {
     const uint64_t total = settings_.noise > 0 || settings_.seconds > 0 ? 0 : wanted_.end - wanted_.begin;
     ProgressState s;
     const double done = samples_ + inPass;
@@ -285,7 +285,7 @@ bool PathLoop::tracePass(const Pass& pass) {
                     [&](size_t done) {
                         job_.pollStop();
                         if (settings_.seconds > 0 && any_ && job_.elapsed() > settings_.seconds) job_.halt = 1;
-                        tell(double(pass.samples()) * double(done) / double(tiles_.size()), false);
+                        showProgress(double(pass.samples()) * double(done) / double(tiles_.size()), false);
                         show(false);
                     });
     } catch (const std::bad_alloc&) { job_.outOfMemory = std::current_exception(); } // the film has complete passes only
@@ -359,7 +359,7 @@ bool PathLoop::run(const std::function<void(Film&)>& afterPass) {
         if (afterPass) afterPass(film_);
         show(true);
     }
-    if (any_) tell(0, true);
+    if (any_) showProgress(0, true);
     else job_.progress.clear();
     job_.halt = 0;
     return any_;

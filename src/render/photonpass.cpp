@@ -74,7 +74,7 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<world::Stored
                         uint64_t* emitted) {
     const uint64_t blocks = (count + kBlock - 1) / kBlock;
     uint64_t done = 0;
-    const auto tell = [&](double now) {
+    const auto showProgress = [&](double now) {
         if (what.empty()) return;
         ProgressState s;
         s.fraction = s.samplesDone = double(now) / double(blocks);
@@ -94,7 +94,7 @@ bool PhotonPasses::emit(uint32_t pass, uint64_t count, std::vector<world::Stored
             },
             [&](size_t finished) {
                 job_.pollStop();
-                tell(double(done) + double(finished));
+                showProgress(double(done) + double(finished));
             });
         if (!whole) break;
         size_t more = stored.size();
@@ -192,7 +192,7 @@ bool CausticPasses::begin() {
     begun_ = true;
     if (!asked(o)) {
         forgetLearned(job_); // of another part of the same world, in the viewer: pilot paths would follow it
-        return learnCaustics(job_) && learnLights(job_) && learnBrightness(job_);
+        return learnCaustics(job_) && learnSeeds(job_) && learnLights(job_) && learnBrightness(job_);
     }
     if (!job_.world->photons()) return true;
     // One photon for four pixels of the complete picture, so that a crop equals that part of the picture.
@@ -224,7 +224,7 @@ bool CausticPasses::begin() {
         radius_ = start.radius;
         window_ = start.window;
     }
-    passes->emission().tellLights();
+    passes->emission().markPhotonLights();
     passes_ = std::move(passes);
     return true;
 }

@@ -9,9 +9,11 @@ namespace alpenglow::render {
 /// Emits photons on the threads of a job and shows progress.
 class PhotonPasses {
 public:
+    /// use: which photons, how many.
     PhotonPasses(Job&, std::shared_ptr<const world::World>, const integrator::PhotonUse&);
     /// The same with other diagnostics.
     PhotonPasses(Job&, std::shared_ptr<const world::World>, const integrator::PhotonUse&, Diagnostics&);
+    /// What emits the photons.
     integrator::PhotonEmission& emission() { return emission_; }
     /// Emits `count` photons of a pass and collects the stored ones. Returns false if stopped, or if more than limits::kPhotons
     /// were stored, which is reported; *emitted is then the number of photons emitted for these.
@@ -40,6 +42,7 @@ uint64_t photonsToEmit(const scene::Options&, Diagnostics&);
 /// Caustics under path by photons: each sample of all pixels has photons of its own (docs/light.md).
 class CausticPasses {
 public:
+    /// Of the job's world, which has a photon use.
     explicit CausticPasses(Job&);
     /// Whether Hider "path" "caustics" is set.
     static bool asked(const scene::Options&);

@@ -6,6 +6,7 @@
 
 namespace alpenglow::render {
 
+/// RISpec's filters, and those that other renderers add (docs/options.md).
 enum class FilterKind {
     Box,
     Triangle,
@@ -20,16 +21,17 @@ enum class FilterKind {
     BlackmanHarris,
     Lanczos
 };
-inline constexpr int kFilterKinds = 12;
+inline constexpr int kFilterKinds = 12; ///< number of kinds
 
 /// The name used in RIB: "box", "catmull-rom", ...
 const char* filterName(FilterKind);
+/// The reverse; nothing: there is no such filter.
 std::optional<FilterKind> filterByName(std::string_view name);
 
 /// A filter with its full widths, in pixels. Values are not normalised: users divide by the sum of weights.
 struct PixelFilter {
-    FilterKind kind = FilterKind::Gaussian;
-    double xw = 2, yw = 2;
+    FilterKind kind = FilterKind::Gaussian; ///< shape
+    double xw = 2, yw = 2;                  ///< > 0
 
     /// The filter at (x, y), in pixels from its centre; 0 outside |x| <= xw/2, |y| <= yw/2.
     double operator()(double x, double y) const;

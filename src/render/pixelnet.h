@@ -15,20 +15,24 @@
 
 namespace alpenglow::render {
 
+/// The nets of one frame's pixels. Immutable.
 class PixelNet {
 public:
+    /// The numbers of one sample.
     struct Numbers {
-        float time = 0; ///< each in [0, 1)
-        Vec2 lens{0.5f, 0.5f};
+        float time = 0;        ///< each in [0, 1)
+        Vec2 lens{0.5f, 0.5f}; ///< in the unit square
     };
     /// State of a pixel; reuse it for all of its samples.
     struct Pixel {
-        Sampler sampler;
-        Words4<uint32_t> all, time, lensX, lensY;
+        Sampler sampler;                          ///< of the pixel
+        Words4<uint32_t> all, time, lensX, lensY; ///< words that permute the digits of each dimension
     };
     /// Sample k is in column k % nx of row k / nx. `moves`, `lens`: the dimensions needed; others keep their defaults.
     PixelNet(int nx, int ny, bool moves, bool lens);
+    /// Whether some dimension is needed.
     bool asked() const { return moves_ || lens_; }
+    /// For the pixel of a sampler; the numbers of its sample k.
     Pixel pixel(const Sampler&) const;
     Numbers sample(const Pixel&, int k) const;
 

@@ -1,7 +1,7 @@
 // Deferred procedurals: expands those that a frame needs from the start, and builds worlds with those that rays reached.
 #include "world/procedurals.h"
+#include "render/emptyresults.h"
 #include "render/framework.h"
-#include "render/lacks.h"
 #include "render/levels.h"
 #include "render/photonpass.h"
 #include "scene/deferred.h"
@@ -43,12 +43,12 @@ bool Renderer::buildFrame(FrameWork& f) {
 
 void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
     if (!makeProcedurals_) return;
-    job.make = [&f, this](std::span<const int> met) -> std::shared_ptr<const world::World> {
+    job.make = [&f, this](std::span<const int> met, int most) -> std::shared_ptr<const world::World> {
         if (!f.later) {
-            auto said = std::make_shared<std::set<std::string>>();
-            for (const Diagnostic& d : diagnostics_.all()) said->insert(toString(d));
-            f.later = std::make_unique<Diagnostics>([said, this](const Diagnostic& d) {
-                if (said->insert(toString(d)).second) diagnostics_.report(d);
+            auto reported = std::make_shared<std::set<std::string>>();
+            for (const Diagnostic& d : diagnostics_.all()) reported->insert(toString(d));
+            f.later = std::make_unique<Diagnostics>([reported, this](const Diagnostic& d) {
+                if (reported->insert(toString(d)).second) diagnostics_.report(d);
             });
         }
         const auto begun = clockSeconds();
@@ -56,7 +56,9 @@ void Renderer::makeWhatIsMet(FrameWork& f, Job& job) {
         if (!made) return nullptr;
         stats_.parseSec += clockSeconds() - begun;
         f.made = std::move(made);
-        std::shared_ptr<const world::World> next = engine_.build(drawnLevels(f.made, f.camera), f.settings, *f.later);
+        world::Settings settings = f.settings;
+        settings.deferredAtOnce = most;
+        std::shared_ptr<const world::World> next = engine_.build(drawnLevels(f.made, f.camera), settings, *f.later);
         if (!next) return nullptr;
         stats_.buildSec += next->facts().buildSec;
         stats_.compileSec += next->facts().compileSec;

@@ -9,6 +9,7 @@
 
 namespace alpenglow::render {
 
+/// Auto: a bar if standard error is a terminal, else plain lines.
 enum class ProgressMode { Auto, Bar, Plain, None };
 /// "auto" "bar" "plain" "none" (--progress MODE).
 std::optional<ProgressMode> progressModeByName(std::string_view);
@@ -19,17 +20,18 @@ struct ProgressState {
     double samplesDone = 0;    ///< samples per pixel so far (a fraction inside a pass)
     uint64_t samplesTotal = 0; ///< per pixel; 0 if unknown (--noise, --time)
     double noise = -1;         ///< relative noise so far; < 0: unknown
-    double raysPerMS = 0;
+    double raysPerMS = 0;      ///< thousand rays a second
 };
 
+/// Writes the progress of one frame. Thread safe.
 class Progress {
 public:
-    using Sink = std::function<void(std::string_view)>;
-    using Clock = std::function<double()>;        ///< seconds, any origin, monotonic
-    static constexpr double kBarSeconds = 0.5;    ///< a bar is redrawn at most twice a second
-    static constexpr double kPlainSeconds = 5;    ///< a line after this time, if there is progress,
-    static constexpr double kPlainFraction = 0.1; ///< or after this fraction of the work, but no more often than
-    static constexpr double kPlainLeast = 1;      ///< every so many seconds
+    using Sink = std::function<void(std::string_view)>; ///< receives text for standard error
+    using Clock = std::function<double()>;              ///< seconds, any origin, monotonic
+    static constexpr double kBarSeconds = 0.5;          ///< a bar is redrawn at most twice a second
+    static constexpr double kPlainSeconds = 5;          ///< a line after this time, if there is progress,
+    static constexpr double kPlainFraction = 0.1;       ///< or after this fraction of the work, but no more often than
+    static constexpr double kPlainLeast = 1;            ///< every so many seconds
 
     /// For use: Auto becomes Bar if the file is a terminal, else Plain. The file is not closed.
     explicit Progress(ProgressMode, std::FILE* = stderr);

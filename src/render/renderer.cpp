@@ -7,11 +7,11 @@
 #include "display/driver.h"
 #include "render/curve.h"
 #include "render/digest.h"
+#include "render/emptyresults.h"
 #include "render/filmpicture.h"
 #include "render/frameprocesses.h"
 #include "render/imagertext.h"
 #include "render/imaging.h"
-#include "render/lacks.h"
 #include "render/levels.h"
 #include "render/partfile.h"
 #include "render/photonpass.h"
@@ -150,7 +150,7 @@ void Renderer::closeFrame(FrameStats stats) {
     stats_.warnings += diagnostics_.warnings();
     stats_.threads = settings_.threads;
     stats_.peakMemoryBytes = peakMemoryBytes();
-    stats_.settle();
+    stats_.finalise();
     stats.figures = stats_;
     stats.scene = settings_.sceneFile;
     frames_.push_back(std::move(stats));
@@ -227,7 +227,7 @@ RenderStats Renderer::stats() const {
     else s.parseSec += rest.parseSec;
     s.threads = settings_.threads;
     s.peakMemoryBytes = std::max(s.peakMemoryBytes, peakMemoryBytes());
-    s.settle();
+    s.finalise();
     const Diagnostics& messages = processes_ ? processes_->messages() : diagnostics_;
     s.errors = messages.errors();
     s.warnings = messages.warnings();

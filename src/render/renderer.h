@@ -17,6 +17,7 @@ namespace alpenglow::render {
 
 class FrameProcesses;
 
+/// Renders the frames of a run, one after the other.
 class Renderer final : public scene::FrameConsumer {
 public:
     /// Prints the results of `--pixel`, one line a call, without line end.
@@ -32,11 +33,12 @@ public:
     void setScene(const std::string& path, const std::set<std::string>& read = {});
     /// For ri::ReaderOptions::defers: expands procedurals of a frame during rendering (ri::RibReader::make()).
     using MakeProcedurals = std::function<std::shared_ptr<const scene::Frame>(const scene::Frame&, std::span<const int>)>;
+    /// Unset: procedurals are expanded by the reader.
     void setProcedurals(MakeProcedurals make) { makeProcedurals_ = std::move(make); }
     /// Frames are rendered by these processes from here on. They must outlive the renderer, and report its diagnostics.
     void setProcesses(FrameProcesses&);
     /// Waits until all submitted frames are rendered.
-    void settle();
+    void waitForFrames();
     /// Whether the files known before a scene is read (-o, --checkpoint, --stats) can be written. Returns false after an error,
     /// which is reported.
     bool canBegin();
@@ -50,8 +52,8 @@ public:
     /// Call after the last scene: reports if picture options had no effect because all frames were maps.
     void finish();
 
-    using Outcome = render::Outcome;
-    /// For frames rendered so far; complete after settle().
+    using Outcome = render::Outcome; ///< as of render
+    /// For frames rendered so far; complete after waitForFrames().
     const Outcome& outcome() const { return outcome_; }
     /// Figures of all frames so far: times, rays and counts are sums; size, samples and noise are the last frame's.
     RenderStats stats() const;

@@ -56,7 +56,7 @@ bool Renderer::numbersFrame() {
 
 void Renderer::numberFirstPicture() {
     if (!firstPicture_) return;
-    settle(); // it must exist
+    waitForFrames(); // it must exist
     const FirstPicture first = *std::exchange(firstPicture_, {});
     std::error_code e;
     // A file that could not be written does not exist; a name may also refer to a device.

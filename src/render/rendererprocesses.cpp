@@ -37,7 +37,7 @@ bool Renderer::drawsHere(const FrameWork& f) {
         writes.files.push_back(s.name);
         written_.push_back(followedPath(s.name));
     }
-    writes.others = writes.settled = f.o.hider == "photon"; // the names are in the scene and its shaders
+    writes.others = writes.declared = f.o.hider == "photon"; // the names are in the scene and its shaders
     const int number = f.o.frameNumber;
     handedOver_ = !processes_->start(number > 0 ? "frame " + std::to_string(number) : "a frame", std::move(writes), false);
     if (!handedOver_) beginProcess(false);
@@ -79,8 +79,8 @@ void Renderer::takeResult(FrameResult r) {
     frames_.push_back(std::move(*r.stats));
 }
 
-void Renderer::settle() {
-    if (processes_) processes_->settle();
+void Renderer::waitForFrames() {
+    if (processes_) processes_->waitForFrames();
 }
 
 void Renderer::beforeRead(const std::string& name) {

@@ -7,11 +7,11 @@
 #include "render/curve.h"
 #include "render/deeppass.h"
 #include "render/digest.h"
+#include "render/emptyresults.h"
 #include "render/filmpicture.h"
 #include "render/framework.h"
 #include "render/imagertext.h"
 #include "render/imaging.h"
-#include "render/lacks.h"
 #include "render/levels.h"
 #include "render/outputnames.h"
 #include "render/partfile.h"
@@ -19,6 +19,8 @@
 #include "render/rendering.h"
 #include "render/watcher.h"
 #include "world/bakes.h"
+#include "world/causticseeds.h"
+#include "world/photonstore.h"
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -463,6 +465,8 @@ void Renderer::takeFigures(const FrameWork& f, Job& job) {
     stats_.depth.maximum = std::max(stats_.depth.maximum, c.depthMax);
     stats_.threadBytes = std::max<uint64_t>(stats_.threadBytes, c.threadBytes);
     stats_.guide = {job.guide.photons, job.guide.cells, job.guide.lobes, c.guided, c.guidedLit, c.guidedLight};
+    if (const world::PhotonStore* store = job.world->photons(); store && store->seeds)
+        stats_.specular = {store->seeds->seeds(), c.searches, c.searchesFound, c.probes};
     stats_.lightGuide = {job.lightGuide.samples, job.lightGuide.lights, job.lightGuide.cells, job.lightGuide.used};
     stats_.nonFinite += f.nonFinite;
     if (!settings_.pixel) {

@@ -61,14 +61,14 @@ bool Job::runShown(size_t count, const char* part, const std::function<void(int,
 
 bool Job::makeMet() {
     const std::vector<int> numbers = world::procedurals(*world);
-    std::shared_ptr<const world::World> next = make && !numbers.empty() ? make(numbers) : nullptr;
+    // Nearest first; then twice as many each round, so that a long row of procedurals needs few rounds.
+    const int most = 1 << std::min(++rounds_, 20);
+    std::shared_ptr<const world::World> next = make && !numbers.empty() ? make(numbers, most) : nullptr;
     if (!next) {
         if (!pollStop()) throw std::runtime_error("procedurals that rays reached cannot be expanded");
         return false;
     }
     world::takeOver(*next, *world);
-    // Nearest first; then twice as many each round, so that a long row of procedurals needs few rounds.
-    world::askForProcedurals(*next, 1 << std::min(++rounds_, 20));
     earlier_ = counters();
     world = std::move(next);
     begin();
@@ -85,7 +85,7 @@ bool Job::trace(int worker, std::span<const integrator::CameraRay> in, std::span
     rays[size_t(worker)] = now;
     if (whole && !t.unfinished() && !(met && shone))
         for (const integrator::SampleResult& r : out) {
-            if (!r.left.empty() || (in[0].depthOnly && r.z < 1e38f)) met = shone = true; // depth renders need no light
+            if (!r.transmittance.empty() || (in[0].depthOnly && r.z < 1e38f)) met = shone = true; // depth renders need no light
             if (r.z < 1e38f || luminance(r.opacity) > 0) met = true;
             if (r.color.x != 0 || r.color.y != 0 || r.color.z != 0) shone = true;
         }

@@ -30,6 +30,7 @@ inline constexpr size_t kBandBytes = size_t(2) << 20;
 
 /// A frame during rendering.
 struct Job {
+    /// Given to the constructor; they outlive the job.
     const RenderSettings& settings;
     const Camera& camera;
     const OutputPlan& plan;
@@ -47,16 +48,17 @@ struct Job {
     std::exception_ptr outOfMemory;               ///< set if the samples of a pass did not fit; complete passes remain
     std::vector<std::unique_ptr<Tracer>> tracers; ///< by worker
     std::vector<uint64_t> rays;                   ///< by worker, at the last report
-    std::atomic<uint64_t> rayTotal{0};
-    integrator::LightGuideFigures lightGuide;   ///< of path
-    world::GuideFigures guide;                  ///< of path
-    std::atomic<bool> met{false}, shone{false}; ///< some camera ray hit a surface; carried light
+    std::atomic<uint64_t> rayTotal{0};            ///< at the last report, of all workers
+    integrator::LightGuideFigures lightGuide;     ///< of path
+    world::GuideFigures guide;                    ///< of path
+    std::atomic<bool> met{false}, shone{false};   ///< some camera ray hit a surface; carried light
 
+    /// threads: 0 all cores.
     Job(const RenderSettings&, const Camera&, const OutputPlan&, Engine&, std::shared_ptr<const world::World>, int threads,
         Progress&, Diagnostics&);
     /// Builds the world with procedurals that rays reached (world/procedurals.h), by number; returns null if the user stops, or
     /// after an error (reported). Unset: no deferred procedurals.
-    std::function<std::shared_ptr<const world::World>(std::span<const int>)> make;
+    std::function<std::shared_ptr<const world::World>(std::span<const int>, int most)> make;
     /// Runs tasks 0 to count - 1 like Team::run(). Tasks whose rays reached deferred procedurals are repeated after expansion, so
     /// the results of a task must be those of its last run.
     bool run(size_t count, const std::function<void(int, size_t)>& work, const std::function<void(size_t)>& tick);
@@ -70,6 +72,7 @@ struct Job {
     bool trace(int worker, std::span<const integrator::CameraRay>, std::span<integrator::SampleResult>);
     /// Forwards the user's stop, or that of an error, to the tracers; returns true if there was one.
     bool pollStop();
+    /// Sums over the tracers, and over earlier worlds; seconds since the start.
     integrator::Counters counters() const;
     double elapsed() const;
 
@@ -82,6 +85,7 @@ private:
 
 /// Seconds of a monotonic clock.
 double clockSeconds();
+/// Rays of all kinds.
 uint64_t totalRays(const integrator::Counters&);
 /// The tiles of a window, in reading order.
 std::vector<Window> tilesOf(const Window&, int side = kTile);
@@ -90,9 +94,10 @@ std::vector<Window> tilesOf(const Window&, int side = kTile);
 integrator::CameraRay pathRay(const Camera&, const FilterSampler&, uint64_t seed, int x, int y, uint32_t sample, float* weight);
 /// The same for many samples at a time.
 struct PixelSample {
-    int x, y;
-    uint32_t sample;
+    int x, y;        ///< pixel
+    uint32_t sample; ///< index in the pixel
 };
+/// Weights: FilmSample::weight, by sample.
 void pathRays(const Camera&, const FilterSampler&, uint64_t seed, std::span<const PixelSample>, NumberRows&,
               std::vector<integrator::CameraRay>& rays, std::vector<float>& weights);
 /// Adds samples to the film in complete passes until the range is done, the requested noise or time is reached, or the user
@@ -105,6 +110,7 @@ bool findRecords(Job&);
 
 /// The nx x ny samples of a pixel under hidden and raytrace.
 void gridOf(const scene::Options&, const RenderSettings&, int* nx, int* ny);
+/// From the hider's parameter "jitter" and the samples per pixel.
 Jitter jitterOf(const scene::Options&, Diagnostics&);
 /// Where `hidden`, or else raytrace, shades, by the hider's parameter "shading" or Option "hidden" "shading": "micropolygon" or
 /// "sample". Reports invalid values, and raytrace with a lens or an open shutter, which cannot shade micropolygons.
@@ -114,6 +120,7 @@ bool shadesMicropolygons(const scene::Options&, bool hidden, const Camera&, Diag
 struct Refinement {
     int side = 1;           ///< 3, 5, 7 or 9; 1: none
     float threshold = 0.3f; ///< threshold for the sum of the differences of red, green and blue, each clamped to 0 .. 1
+    /// There is a second round.
     bool on() const { return side > 1; }
 };
 /// The hider's parameters aaSamples and aaThreshold; none if a lens or motion needs more rays, which is reported.
@@ -125,11 +132,15 @@ struct Refined {
 /// The camera rays of image samples, many at a time.
 class ImageRays {
 public:
+    /// nx, ny: samples of a pixel.
     ImageRays(const Camera&, uint64_t seed, int nx, int ny, Jitter);
+    /// Drops requests; memory stays.
     void clear();
+    /// Requests sample k, 0 <= k < nx ny, of a pixel.
     void ask(int x, int y, int k);
     /// Makes the rays requested since clear(): places()[i] in its pixel and rays()[i] belong to the i-th request.
     void make();
+    /// The results of make().
     std::span<const Vec2> places() const { return places_.places(); }
     std::vector<integrator::CameraRay>& rays() { return rays_; }
 
@@ -148,14 +159,14 @@ private:
 };
 /// Samples with values that are not finite: their number, and sample, y and x of the first.
 struct DroppedSamples {
-    uint64_t count = 0;
-    std::optional<std::array<int, 3>> first;
+    uint64_t count = 0;                      ///< number of samples
+    std::optional<std::array<int, 3>> first; ///< sample, y, x
 };
 /// Reconstructed pictures: plan.pictures[i] has images[of[i]].
 struct Reconstructions {
     std::vector<Image> images;
     std::vector<size_t> of;
-    Refined refined;
+    Refined refined;   ///< of hider raytrace
     bool begun = true; ///< false: the user stopped before any part was complete
 };
 /// If the user stops, unreached pixels stay black. `memory`: of the samples, reused from frame to frame if small, because new

@@ -29,7 +29,7 @@ void Renderer::makeTexture(const std::string& kind, const std::vector<std::strin
 /// replaces.
 void Renderer::makeInProcess(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
                              const SourcePlace& place) {
-    processes_->settle();
+    processes_->waitForFrames();
     processes_->openFrame();
     const RenderStats stats = stats_;
     try {
@@ -45,7 +45,7 @@ void Renderer::makeInProcess(const std::string& kind, const std::vector<std::str
     }
     endFrame();
     stats_ = stats;
-    processes_->settle();
+    processes_->waitForFrames();
 }
 
 void Renderer::runMakeRequest(const std::string& kind, const std::vector<std::string>& files, const scene::ParamList& args,
@@ -61,12 +61,12 @@ void Renderer::runMakeRequest(const std::string& kind, const std::vector<std::st
     for (const scene::Param& p : args)
         if (p.strings.empty()) numbers.insert(numbers.end(), p.numbers.begin(), p.numbers.end());
     int before = diagnostics_.errors();
-    const size_t said = diagnostics_.all().size();
+    const size_t reported = diagnostics_.all().size();
     const auto unwritten = [](const Diagnostic& d) { return d.code == Rie::DiskFull || d.code == Rie::System; };
     const bool made = texture::runMakeRequest(kind, files, numbers, m, diagnostics_);
     outcome_.textures += made;
     const auto all = diagnostics_.all();
-    outcome_.outputFailed |= !made && std::any_of(all.begin() + long(said), all.end(), unwritten);
+    outcome_.outputFailed |= !made && std::any_of(all.begin() + long(reported), all.end(), unwritten);
     if (!made && diagnostics_.errors() == before) diagnostics_.report(Severity::Error, Rie::BadFile, place, kind + " failed");
 }
 

@@ -25,9 +25,13 @@ Vec2 stratifiedOffset(uint64_t seed, int x, int y, int k, int nx, int ny, Jitter
 /// Computes the positions of many samples, with the same bits.
 class PlaceRows {
 public:
+    /// nx, ny: samples of a pixel.
     PlaceRows(uint64_t seed, int nx, int ny, Jitter jitter) : seed_(seed), nx_(nx), ny_(ny), jitter_(jitter) {}
+    /// Drops requests; memory stays.
     void clear();
+    /// Requests sample k, 0 <= k < nx ny, of a pixel.
     void ask(int x, int y, int k);
+    /// Computes the requested positions.
     void draw();
     /// After draw(): places()[i] is the position of the i-th request.
     std::span<const Vec2> places() const { return places_; }
@@ -45,21 +49,23 @@ private:
 
 /// An image sample: colour and AOVs composited over its surfaces, premultiplied by opacity.
 struct ImageSample {
-    Color color, opacity;
+    Color color, opacity;                                   ///< premultiplied
     float z = std::numeric_limits<float>::infinity();       ///< camera-space depth of the first surface that counts; inf: none
     float zSecond = std::numeric_limits<float>::infinity(); ///< of the second surface, for depth filter "midpoint"
-    std::span<const float> aovs;
+    std::span<const float> aovs;                            ///< in the order of the frame's AOVs
 };
 
+/// How the depths of the samples around a pixel become one (the hider's parameter "depthfilter").
 enum class DepthFilter { Min, Max, Average, Midpoint };
 /// "min" "max" "average" "midpoint", also "zmin" "zmax".
 std::optional<DepthFilter> depthFilterByName(std::string_view);
 
 /// A rectangle of pixels, channels interleaved, rows from the top.
 struct Image {
-    Window window;
+    Window window;                     ///< what it covers
     std::vector<std::string> channels; ///< "r" "g" "b" "a" "Or" "Og" "Ob" "z", then the AOVs
-    std::vector<float> data;
+    std::vector<float> data;           ///< window.width() numbers times channels a row
+    /// X, y in the window; c: index of a channel.
     float at(int x, int y, int c) const {
         return data[(size_t(y - window.y0) * size_t(window.width()) + size_t(x - window.x0)) * channels.size() + size_t(c)];
     }
@@ -69,6 +75,7 @@ inline constexpr int kImageFixedChannels = 8;
 /// Number of pixels beyond its own that a filter of full width w pixels, centred on a pixel, can reach.
 int border(double w);
 
+/// Samples of a part of the raster.
 class SampleBuffer {
 public:
     /// Samples for reconstructing `window` with filters whose full widths do not exceed maxXw, maxYw. nx, ny >= 1 per pixel.
@@ -79,12 +86,14 @@ public:
     static size_t floats(int width, int height, double maxXw, double maxYw, int samplesPerPixel, size_t aovs) {
         return size_t(width + 2 * border(maxXw)) * size_t(height + 2 * border(maxYw)) * size_t(samplesPerPixel) * (kAovs + aovs);
     }
+    /// Takes the memory, for the next buffer.
     std::vector<float> takeMemory() && { return std::move(data_); }
     /// Moves to the window below, of the same width, and keeps the samples of shared rows. Returns the first row without samples.
     int moveDown(const Window&);
 
     /// All pixels that need samples: the window and its border. It may extend beyond the picture.
     const Window& sampled() const { return sampled_; }
+    /// Nx times ny.
     int samplesPerPixel() const { return nx_ * ny_; }
     /// Raster position of a sample, pixels.
     Vec2 position(int x, int y, int k) const;
@@ -92,9 +101,11 @@ public:
     /// whose colour or opacity is not finite is dropped and counted, and false is returned; a NaN in an AOV or depth becomes 0 or
     /// "none", counted.
     bool set(int x, int y, int k, Vec2 place, const ImageSample&);
+    /// Sets sample k of a pixel; false: it is not finite and counts as "none".
     bool set(int x, int y, int k, const ImageSample&);
     /// Colour of a sample; black if there is none.
     Color color(int x, int y, int k) const;
+    /// Number of samples that set() has refused.
     uint64_t nonFinite() const { return nonFinite_; }
 
     /// The pixels of `out`, which must be inside the constructor's window. Colours, opacities and averaged AOVs: weighted by the

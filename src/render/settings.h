@@ -16,11 +16,12 @@ namespace alpenglow::render {
 
 class Watcher;
 
+/// What the command line sets, for all frames.
 struct RenderSettings {
-    std::string output;                   ///< -o: one picture instead of the scene's displays; "" = the displays
-    std::vector<scene::Display> displays; ///< --display TYPE:NAME:MODE, added to the scene's own
-    int width = 0, height = 0;            ///< --format; 0 = the scene's
-    double resolutionFactor = 1;
+    std::string output;                       ///< -o: one picture instead of the scene's displays; "" = the displays
+    std::vector<scene::Display> displays;     ///< --display TYPE:NAME:MODE, added to the scene's own
+    int width = 0, height = 0;                ///< --format; 0 = the scene's
+    double resolutionFactor = 1;              ///< factor of both sides of the picture
     std::optional<std::array<float, 4>> crop; ///< x0 x1 y0 y1 in 0..1
     std::string hider;                        ///< --hider
     uint32_t spp = 0;                   ///< samples per pixel; 0: PixelSamples, or 64 under path if the scene does not set them
@@ -30,14 +31,14 @@ struct RenderSettings {
     /// {K, N}, 1 <= K <= N: the K-th of N equal sample ranges; also writes a part file
     std::optional<std::array<uint32_t, 2>> part;
     uint64_t seed = 0;
-    bool seedByFrame = false; ///< --seed frame: the seed is the frame number
-    int threads = 0;          ///< 0 = all cores
-    int lanes = 16;
-    int maxDepth = -1;
-    float sampleClamp = 0; ///< 0 = off
-    bool direct = true, indirect = true, unbiased = false, localRoulette = false;
-    std::optional<float> gamma;                         ///< --gamma
-    bool srgb = false;                                  ///< --gamma srgb
+    bool seedByFrame = false;                                                     ///< --seed frame: the seed is the frame number
+    int threads = 0;                                                              ///< 0 = all cores
+    int lanes = 16;                                                               ///< of kernels: 4, 8, 16
+    int maxDepth = -1;                                                            ///< bounces; -1: the scene's
+    float sampleClamp = 0;                                                        ///< 0 = off
+    bool direct = true, indirect = true, unbiased = false, localRoulette = false; ///< flags of these names
+    std::optional<float> gamma;                                                   ///< --gamma
+    bool srgb = false;                                                            ///< --gamma srgb
     std::string savePattern;                            ///< a name with <spp> and <no> in it, used without -o; "" = the displays
     std::string statsFile;                              ///< JSON; "" = none
     std::string checkpoint;                             ///< part file, written after passes; "" = none
@@ -53,16 +54,16 @@ struct RenderSettings {
     std::string dialect;                            ///< FrontOptions::dialect of the shaders
     std::string scenePath;                          ///< folder of the scene: last but one in the search path; "" = none
     std::string shippedShaders;                     ///< last folder in the search path of shaders
-    bool allowExec = false, allowWrite = false, allowRead = false;
-    std::shared_ptr<ReadLog> reads; ///< records every shader and map that is read or missing; may be null
-    size_t memoryLimit = 0;         ///< memory limit of the process (base/memory.h), for messages; 0 = none
-    ProgressMode progress = ProgressMode::Auto;
-    bool quiet = false;
-    std::string software = "Alpenglow"; ///< name, version and commit, for pictures and --stats
-    std::string sceneFile, command;     ///< the current scene file and the command line, for pictures and --stats
-    bool stamp = false;                 ///< --stamp: pictures name command, host, date and seconds
-    const StopFlag* stop = nullptr;     ///< non-zero: end soon and keep what is complete
-    Watcher* watcher = nullptr;         ///< a viewer (watcher.h); null: none
+    bool allowExec = false, allowWrite = false, allowRead = false; ///< flags of these names
+    std::shared_ptr<ReadLog> reads;             ///< records every shader and map that is read or missing; may be null
+    size_t memoryLimit = 0;                     ///< memory limit of the process (base/memory.h), for messages; 0 = none
+    ProgressMode progress = ProgressMode::Auto; ///< how it is shown
+    bool quiet = false;                         ///< no messages below errors
+    std::string software = "Alpenglow";         ///< name, version and commit, for pictures and --stats
+    std::string sceneFile, command;             ///< the current scene file and the command line, for pictures and --stats
+    bool stamp = false;                         ///< --stamp: pictures name command, host, date and seconds
+    const StopFlag* stop = nullptr;             ///< non-zero: end soon and keep what is complete
+    Watcher* watcher = nullptr;                 ///< a viewer (watcher.h); null: none
 };
 
 } // namespace alpenglow::render

@@ -82,6 +82,10 @@ std::string toJson(const RenderStats& s) {
                     {"cacheHits", s.shading.cacheHits}};
     j["guide"] = {{"photons", s.guide.photons}, {"cells", s.guide.cells}, {"lobes", s.guide.lobes},
                   {"rays", s.guide.rays},       {"lit", s.guide.lit},     {"light", guidedLight(s)}};
+    j["specularLights"] = {{"seeds", s.specular.seeds},
+                           {"searches", s.specular.searches},
+                           {"found", s.specular.found},
+                           {"probes", s.specular.probes}};
     const RenderStats::LightGuide& l = s.lightGuide;
     j["lightGuide"] = {{"samples", l.samples}, {"lights", l.lights}, {"cells", l.cells}, {"used", l.used}};
     j["depth"] = {{"maximum", s.depth.maximum}, {"average", finite(s.depth.average)}};
@@ -125,6 +129,13 @@ std::string toTable(const RenderStats& s) {
                                  grouped(s.guide.photons), grouped(s.guide.cells), grouped(s.guide.lobes), grouped(s.guide.rays),
                                  100 * double(s.guide.rays) / double(std::max<uint64_t>(s.totalRays, 1)),
                                  100 * double(s.guide.lit) / double(std::max<uint64_t>(s.guide.rays, 1)), guidedLight(s)));
+    if (s.specular.seeds)
+        row("mirrored",
+            fmt::format(
+                "{} searches for light of point and distant lights by mirrors and glass, {:.1f} % found some, by "
+                "{:.1f} probes each; from {} photons",
+                grouped(s.specular.searches), 100 * double(s.specular.found) / double(std::max<uint64_t>(s.specular.searches, 1)),
+                double(s.specular.probes) / double(std::max<uint64_t>(s.specular.searches, 1)), grouped(s.specular.seeds)));
     if (s.lightGuide.used)
         row("lights",
             fmt::format("{} sampled where they are visible, by {} samples, in {} of {} cells", grouped(s.lightGuide.lights),

@@ -15,9 +15,12 @@
 
 namespace alpenglow::render {
 
+/// Threads of one render.
 class Team {
 public:
+    /// Below 1: 1.
     explicit Team(int threads) : threads_(threads < 1 ? 1 : threads) {}
+    /// Number of threads.
     int threads() const { return threads_; }
 
     /// Calls work(worker, task) for tasks 0 to count - 1, each once, on `threads` threads; worker < threads. Meanwhile tick(done)

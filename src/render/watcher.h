@@ -9,10 +9,10 @@ namespace alpenglow::render {
 
 /// A frame that is about to be rendered. All of it is valid until Watcher::finished().
 struct WatchedFrame {
-    const OutputPlan& plan;
-    const PictureFacts& picture;
-    std::shared_ptr<const world::World> world;
-    const Imager& imager; ///< may be empty
+    const OutputPlan& plan;                    ///< planned pictures
+    const PictureFacts& picture;               ///< for the headers of pictures
+    std::shared_ptr<const world::World> world; ///< never null
+    const Imager& imager;                      ///< may be empty
 };
 
 /// The picture so far.
@@ -36,6 +36,7 @@ public:
     virtual bool writes() const { return true; }
     /// Whether the noise figures of the frame are wanted in Renderer::stats(), which takes a look at every pixel.
     virtual bool wantsNoise() const { return writes(); }
+    /// A frame begins; called by the thread that renders it.
     virtual void begin(const WatchedFrame&) {}
     /// Under path: a film to continue; null: none. The result must match this description.
     virtual std::unique_ptr<Film> filmFor(const FilmDescription&) { return nullptr; }

@@ -358,7 +358,7 @@ void Interpreter::inPart(const std::string& key, const std::function<SourcePlace
     unwind(barriers_.back(), end, true);
     barriers_.pop_back();
     endInnerOptions();
-    tellHeld();
+    announceHeld();
     openArchives_.pop();
     replaying_ = wasReplaying;
 }

@@ -8,6 +8,7 @@
 
 namespace alpenglow::ri {
 
+/// From and to the byte order of binary RIB, highest byte first.
 inline uint32_t fromBig(uint32_t v) { return std::endian::native == std::endian::little ? __builtin_bswap32(v) : v; }
 
 /// Bytes of the longest number with its code.

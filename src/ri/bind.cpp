@@ -33,9 +33,9 @@ std::vector<float> Interpreter::toRgb(const std::vector<double>& c) const {
     return out;
 }
 
-void Interpreter::sayDouble(const SourcePlace& place) {
-    reporter.once("ri:double", Severity::Warning, Rie::BadToken, place, "there is no type \"double\"; it is read as float",
-                  "declare the variable as float");
+void Interpreter::sayOtherType(const OtherType& o, const SourcePlace& place) {
+    reporter.once("ri:type:" + std::string(o.said), Severity::Warning, Rie::BadToken, place,
+                  fmt::format("there is no type \"{}\"; it is read as {}", o.said, o.meant), std::string(o.hint));
 }
 
 scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use, const std::string& category, bool* keep) {
@@ -48,10 +48,10 @@ scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use
     p.name = r.name;
     if (r.malformed) {
         reporter.error(Rie::Syntax, p.place, fmt::format("{}: \"{}\" is not a declaration", request, raw.token.substr(0, 80)),
-                       "class type[n] name, for example \"varying color Cs\"");
+                       declarationHint(raw.token.substr(0, 80), true, "class type[n] name, for example \"varying color Cs\""));
         return p;
     }
-    if (r.inlineForm && r.name != "double" && r.saysDouble) sayDouble(p.place);
+    if (r.otherType) sayOtherType(*r.otherType, p.place);
     bool effect = true; // a bad value of what does nothing is no failure
     if (use == Use::Option || use == Use::Attribute) effect = sayUnknown(use == Use::Option, category, p);
     if (use == Use::Hider || use == Use::Display) effect = sayUnknownParameter(use == Use::Hider, p);

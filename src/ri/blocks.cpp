@@ -115,7 +115,7 @@ void Interpreter::unwind(size_t depth, const SourcePlace& where, bool keepWorld)
             reporter.error(
                 Rie::Nesting, where,
                 fmt::format("{} ends before the {} of line {} is closed", where.file, beginName(b.kind), b.place.line));
-        tellName(b.inner ? "AttributeEnd" : endName(b.kind), where);
+        announceName(b.inner ? "AttributeEnd" : endName(b.kind), where);
         pop();
     }
 }

@@ -1,4 +1,5 @@
 #include "ri/declare.h"
+#include "base/diagnostics.h"
 #include "base/knownoptions.h"
 #include <algorithm>
 #include <charconv>
@@ -124,8 +125,15 @@ std::optional<Class> classNamed(std::string_view s) {
     return {};
 }
 
+constexpr OtherType kOtherTypes[] = {
+    {"double", "float", "declare the variable as float"}, // of exporters that name the numbers of their program
+    {"shader", "string", "a parameter of type shader takes the handle of a co-shader, which is a string"},
+};
+
 std::optional<Type> typeNamed(std::string_view s) {
-    if (s == "float" || s == "double") return Type::Float; // the latter of exporters that name the numbers of their program
+    for (const OtherType& o : kOtherTypes)
+        if (s == o.said) return typeNamed(o.meant);
+    if (s == "float") return Type::Float;
     if (s == "integer" || s == "int") return Type::Integer;
     if (s == "string") return Type::String;
     if (s == "color") return Type::Color;
@@ -172,9 +180,23 @@ std::optional<Declaration> fromWords(const std::vector<std::string_view>& w) {
 
 std::optional<Declaration> parseDeclaration(std::string_view text) { return fromWords(words(text)); }
 
-bool saysDouble(std::string_view text) {
-    const std::vector<std::string_view> all = words(text);
-    return std::find(all.begin(), all.end(), "double") != all.end();
+const OtherType* otherTypeIn(std::string_view text) {
+    for (const std::string_view w : words(text))
+        for (const OtherType& o : kOtherTypes)
+            if (w == o.said) return &o;
+    return nullptr;
+}
+
+std::string declarationHint(std::string_view text, bool named, std::string_view form) {
+    static const std::vector<std::string> kWords = {"constant",   "uniform", "varying", "vertex", "facevarying",
+                                                    "facevertex", "float",   "integer", "string", "color",
+                                                    "point",      "vector",  "normal",  "hpoint", "matrix"};
+    std::vector<std::string_view> all = words(text);
+    if (named && !all.empty()) all.pop_back();
+    for (const std::string_view w : all)
+        if (!classNamed(w) && !typeNamed(w) && w.front() != '[')
+            if (const std::string near = nearestName(w, kWords); !near.empty()) return "did you mean " + near + "?";
+    return std::string(form);
 }
 
 const Resolved& Declarations::resolve(std::string_view token, std::string_view category) const {
@@ -192,13 +214,14 @@ Resolved Declarations::found(std::string_view token, std::string_view category) 
     std::vector<std::string_view> w = words(token);
     if (w.size() > 1) {
         r.inlineForm = true;
-        r.saysDouble = std::find(w.begin(), w.end(), "double") != w.end();
         // The name is last; a length behind it ("float x[2]") is read as the type's.
         size_t nameAt = w.size() - 1;
         if (w[nameAt].front() == '[' && nameAt > 0) --nameAt;
         r.name = std::string(w[nameAt]);
         w.erase(w.begin() + std::ptrdiff_t(nameAt));
         r.declaration = fromWords(w);
+        for (const std::string_view word : w)
+            if (!r.otherType) r.otherType = otherTypeIn(word);
         r.malformed = !r.declaration;
         return r;
     }

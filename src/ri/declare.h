@@ -11,7 +11,7 @@ namespace alpenglow::ri {
 
 /// The type of a parameter.
 struct Declaration {
-    scene::Class cls = scene::Class::Uniform;
+    scene::Class cls = scene::Class::Uniform; ///< storage class
     scene::Type type = scene::Type::Float;
     int arrayLength = 0; ///< 0 = not an array
 };
@@ -19,17 +19,24 @@ struct Declaration {
 /// "[class] type [[n]]"; empty when it is not one.
 std::optional<Declaration> parseDeclaration(std::string_view text);
 
-/// Whether the type of a declaration is "double", which there is not: it is read as float.
-bool saysDouble(std::string_view text);
+/// A type that other programs write and RIB does not have, the type that it is read as, and what to write instead.
+struct OtherType {
+    std::string_view said, meant, hint;
+};
+/// The type of a declaration "[class] type [[n]]" that RIB does not have, such as "double"; null: it has none of these.
+const OtherType* otherTypeIn(std::string_view text);
+/// The hint of a text that is no declaration: the class or type that a word of it is near to, or else `form`. named: the last
+/// word is the variable's name.
+std::string declarationHint(std::string_view text, bool named, std::string_view form);
 
 /// A token of a parameter list, taken apart.
 struct Resolved {
-    std::string name;
+    std::string name;                       ///< the token without an inline declaration
     std::optional<Declaration> declaration; ///< empty: not declared
     bool malformed = false;                 ///< an inline declaration that does not parse
-    bool inlineForm = false;
-    bool byValue = false;    ///< known, with the type of its value
-    bool saysDouble = false; ///< an inline declaration whose type is "double" (saysDouble())
+    bool inlineForm = false;                ///< the token has a declaration in it
+    bool byValue = false;                   ///< known, with the type of its value
+    const OtherType* otherType = nullptr;   ///< of an inline declaration: otherTypeIn()
 };
 
 /// The declared names of a stream. Not thread safe.

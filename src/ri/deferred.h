@@ -6,13 +6,13 @@ namespace alpenglow::ri {
 
 /// A procedural as it was called.
 struct Interpreter::Waiting {
-    std::string kind;
-    std::vector<std::string> arguments;
-    std::vector<float> bound; ///< as it was given
-    Call call;
-    GraphicsState state;
-    OpenArchives archives; ///< that were open
-    bool replaying = false;
+    std::string kind;                     ///< "DelayedReadArchive", "RunProgram", "DynamicLoad"
+    std::vector<std::string> arguments;   ///< of that procedural
+    std::vector<float> bound;             ///< as it was given
+    Call call;                            ///< the call, for messages
+    GraphicsState state;                  ///< at the call
+    OpenArchives archives;                ///< that were open
+    bool replaying = false;               ///< its archive was being read again
     std::string part;                     ///< of what is in it: scene::partOf()
     std::shared_ptr<const Lasting> names; ///< declarations, handles and their like, at the end of what it stands in
 };

@@ -11,9 +11,10 @@ class Lexer;
 
 /// What is read of a stream and not used yet, and where in its line a byte of it is.
 struct Ahead {
-    const char *p = nullptr, *end = nullptr;
-    const char* mark = nullptr; ///< a byte of the line that p is in, at or before p
-    int line = 0, markColumn = 0;
+    const char *p = nullptr, *end = nullptr; ///< next byte, and behind the last one that was read
+    const char* mark = nullptr;              ///< a byte of the line that p is in, at or before p
+    int line = 0, markColumn = 0;            ///< from 1; column of mark
+    /// Of p.
     int column() const { return markColumn + int(p - mark); }
 };
 

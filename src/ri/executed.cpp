@@ -6,7 +6,7 @@
 namespace alpenglow::ri {
 
 /// A request without arguments that the stream does not have, or has under another name.
-void Interpreter::tellName(std::string_view request, const SourcePlace& place) {
+void Interpreter::announceName(std::string_view request, const SourcePlace& place) {
     if (!settings.executed) return;
     Call call;
     call.request = findRequest(request);
@@ -14,38 +14,38 @@ void Interpreter::tellName(std::string_view request, const SourcePlace& place) {
     settings.executed(call);
 }
 
-void Interpreter::tellHeld() {
+void Interpreter::announceHeld() {
     if (inner_) return;
     for (const Call& c : std::exchange(held_, {})) settings.executed(c);
 }
 
-void Interpreter::tell(const Call& call) {
+void Interpreter::announce(const Call& call) {
     const std::string_view name = call.request->name;
     const bool archive = name == "ReadArchive";
     if (archive && (inlineArchives_.count(call.text(0)) || locateArchive(call.text(0), call.place))) return perform(call);
     if (name == "ArchiveBegin") return perform(call); // its contents are passed on when ReadArchive reads it
-    if (name == "Procedural") return tellProcedural(call, call.text(0));
+    if (name == "Procedural") return announceProcedural(call, call.text(0));
     if (name == "Procedural2") {
         std::string kind = call.text(0);
         if (kind.ends_with('2')) kind.pop_back();
-        return tellProcedural(call, kind);
+        return announceProcedural(call, kind);
     }
     // A world within the world becomes what it is taken as (innerworld.cpp).
     const Block* world = name == "WorldEnd" ? innermost(BlockKind::World) : nullptr;
     if (name == "WorldBegin" && archiveInWorld()) {
         held_.clear();
-        tellName("AttributeBegin", call.place);
-    } else if (world && world->inner) tellName("AttributeEnd", call.place);
+        announceName("AttributeBegin", call.place);
+    } else if (world && world->inner) announceName("AttributeEnd", call.place);
     else if (call.request->kind == Kind::Option && archiveInWorld()) held_.push_back(call);
     else settings.executed(call);
     if (archive) return; // it was not found, which has been reported
-    telling_ = true;
+    announcing_ = true;
     perform(call);
-    telling_ = false;
+    announcing_ = false;
 }
 
 /// The contents of a procedural have a graphics state of their own.
-void Interpreter::tellProcedural(const Call& call, const std::string& kind) {
+void Interpreter::announceProcedural(const Call& call, const std::string& kind) {
     const bool foreign = kind == "RunProgram" || kind == "DynamicLoad";
     if (foreign && !settings.allowExec) {
         reporter.once("ri:unexpanded:" + kind, Severity::Warning, Rie::Incapable, call.place,
@@ -54,9 +54,9 @@ void Interpreter::tellProcedural(const Call& call, const std::string& kind) {
         settings.executed(call);
         return;
     }
-    tellName("AttributeBegin", call.place);
+    announceName("AttributeBegin", call.place);
     perform(call);
-    tellName("AttributeEnd", call.place);
+    announceName("AttributeEnd", call.place);
 }
 
 } // namespace alpenglow::ri

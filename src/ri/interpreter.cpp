@@ -117,7 +117,7 @@ void Interpreter::take(const Call& given) {
     const Call& call = substituted ? *substituted : given;
     if (record(call) || conditional(call)) return;
     if (passesOver() || leftOutEdit(call)) return;
-    if (settings.executed && !telling_) tell(call);
+    if (settings.executed && !announcing_) announce(call);
     else perform(call);
 }
 
@@ -262,7 +262,7 @@ void Interpreter::closeOpenEnds(size_t conditions, const SourcePlace& where) {
     }
     if (motion_) {
         if (!stopped()) reporter.error(Rie::Nesting, motion_->place, "MotionBegin without MotionEnd");
-        tellName("MotionEnd", where);
+        announceName("MotionEnd", where);
         Call end;
         end.place = where;
         endMotion(end);

@@ -39,19 +39,19 @@ enum class Use { Shader, Primitive, Option, Attribute, Hider, Display, Other };
 
 /// A value in a condition.
 struct ConditionValue {
-    bool isString = false;
-    double number = 0;
-    std::string text;
+    bool isString = false; ///< else a number
+    double number = 0;     ///< its value
+    std::string text;      ///< its value
 };
 
-using NamedSystems = std::map<std::string, scene::Transform>;
+using NamedSystems = std::map<std::string, scene::Transform>; ///< by name: from the space to world; before WorldBegin to camera
 
 /// What AttributeBegin saves.
 struct GraphicsState {
-    std::shared_ptr<scene::Attributes> attributes;
-    scene::Transform ctm;                       ///< current to world; before WorldBegin to camera
-    std::shared_ptr<const NamedSystems> scoped; ///< ScopedCoordinateSystem
-    LightFilters filters;                       ///< of the lights that follow
+    std::shared_ptr<scene::Attributes> attributes; ///< never null; copied before a change if it is shared
+    scene::Transform ctm;                          ///< current to world; before WorldBegin to camera
+    std::shared_ptr<const NamedSystems> scoped;    ///< ScopedCoordinateSystem
+    LightFilters filters;                          ///< of the lights that follow
 };
 
 /// A stored object: primitives in its own space, and what decides whether its light indices are still valid.
@@ -99,11 +99,12 @@ public:
     Reporter reporter;
     ReaderOptions settings;
     scene::FrameConsumer& consumer;
-    Declarations declarations;
-    scene::Options options;
+    Declarations declarations; ///< of Declare, and those that the language has
+    scene::Options options;    ///< of the frame, until WorldBegin
     GraphicsState state;
     std::vector<double> nRGB; ///< ColorSamples: n x 3; empty = colours are RGB
 
+    /// Between WorldBegin and WorldEnd.
     bool inWorld() const { return frame_ != nullptr; }
     /// The current attributes, for changes. Earlier snapshots keep their values.
     scene::Attributes& attributes();
@@ -151,6 +152,7 @@ public:
     void lightFilter(const Call& call);  ///< LightFilter
     void enableFilter(const Call& call); ///< EnableLightFilter
     void editWorld(const Call& call);    ///< EditWorldBegin
+    /// EditWorldEnd.
     void endEditWorld(const Call& call);
     void linksFilters() { linksFilters_ = true; } ///< Attribute "lightfilter"
     void isRis() { ris_ = true; }                 ///< the scene has requests of RIS
@@ -200,7 +202,7 @@ public:
     void setErrorStyle(ErrorStyle style);
     /// Reports once per request that it is read but has no effect.
     void incapable(const Call& call, const std::string& what);
-    void sayDouble(const SourcePlace&); ///< warns once that "double" in declarations is read as float
+    void sayOtherType(const OtherType&, const SourcePlace&); ///< warns once a type that it is read as another
 
 private:
     struct Block {
@@ -347,11 +349,11 @@ private:
     void dispatch(const Call& call);
     // executed.cpp: ReaderOptions::executed
     /// Performs a request and passes it on, or what is in it.
-    void tell(const Call& call);
-    void tellProcedural(const Call& call, const std::string& kind);
-    void tellName(std::string_view request, const SourcePlace& place);
+    void announce(const Call& call);
+    void announceProcedural(const Call& call, const std::string& kind);
+    void announceName(std::string_view request, const SourcePlace& place);
     /// Options of an archive in the world, kept until it is known that it has no world itself.
-    void tellHeld();
+    void announceHeld();
     bool conditional(const Call& call); ///< handles IfBegin and its kin; false for other requests
     bool record(const Call& call);      ///< takes the request into the archive being recorded; false: none is
     void checkScope(const Call& call);  ///< warns where the request is out of scope
@@ -446,10 +448,10 @@ private:
     bool hasVariables_ = false;                           ///< texts may have variables
     bool making_ = false;                                 ///< what is in procedurals that waited is being made
     bool replaying_ = false;                              ///< inside an archive that was read before
-    bool telling_ = false;   ///< a request that was passed on is executed: what it makes of itself is not
-    std::vector<Call> held_; ///< tellHeld()
-    Lasting base_;           ///< what a scene begins with
-    size_t baseWorld_ = 0;   ///< worldSerial_ at that time
+    bool announcing_ = false; ///< a request that was passed on is executed: what it makes of itself is not
+    std::vector<Call> held_;  ///< announceHeld()
+    Lasting base_;            ///< what a scene begins with
+    size_t baseWorld_ = 0;    ///< worldSerial_ at that time
 };
 
 /// Checks and completes a primitive's variables (the guarantees in scene/scene.h). False (reported): do not draw it.

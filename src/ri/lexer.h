@@ -13,10 +13,11 @@ namespace alpenglow::ri {
 
 struct Request;
 
+/// A token of a stream, ASCII or binary.
 struct Token {
     enum class Kind { End, Identifier, Number, String, Open, Close, Floats /* a whole binary array */ };
-    Kind kind = Kind::End;
-    double number = 0;
+    Kind kind = Kind::End;      ///< what it is
+    double number = 0;          ///< of Number
     std::string text;           ///< identifier or string
     std::vector<double> floats; ///< Kind::Floats
     /// Of an identifier that has a code, where findRequest() leads, and then there may be no text; null: not known.
@@ -25,6 +26,7 @@ struct Token {
     size_t lineStart = 0;     ///< stream offset of that line
 };
 
+/// Splits a stream into tokens, line by line. Errors are reported, and the bytes skipped.
 class Lexer {
 public:
     /// Called with "comment" or "structure" and the text after # or ##.
@@ -36,6 +38,7 @@ public:
     void next(Token& out);
     /// Numbers that follow directly, up to anything else, appended to `out`: the fast way through long arrays.
     void numbers(std::vector<double>& out);
+    /// A place in the stream; that of the next byte.
     SourcePlace place(int line, int column) const { return {file_, line, column}; }
     SourcePlace here() const { return {file_, line_, int(column())}; }
     /// Keeps the line of this token at hand for lineText(): messages about a request come when the next one has been read.
@@ -45,6 +48,7 @@ public:
     }
     /// The text of `line` when it is the current or the marked one and still buffered, at most 200 bytes of it.
     std::string lineText(const SourcePlace&) const;
+    /// As given to the constructor.
     const std::string& file() const { return file_; }
 
     // For what reads ahead in the buffer (direct.h):

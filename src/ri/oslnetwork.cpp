@@ -53,11 +53,11 @@ bool namedAsNetwork(const std::string& path) { return path.ends_with(".xml"); }
 
 } // namespace
 
-std::optional<OslNetwork> oslNetwork(std::string_view xml, const std::string& file, Diagnostics& said) {
-    const auto root = parseXml(xml, file, said, {.anyEndTag = true, .depth = kXmlDepth});
+std::optional<OslNetwork> oslNetwork(std::string_view xml, const std::string& file, Diagnostics& reported) {
+    const auto root = parseXml(xml, file, reported, {.anyEndTag = true, .depth = kXmlDepth});
     if (!root) return {};
     const auto wrong = [&](const XmlElement& at, std::string what) -> std::optional<OslNetwork> {
-        said.report(Severity::Error, Rie::BadFile, {file, at.line, at.column}, std::move(what));
+        reported.report(Severity::Error, Rie::BadFile, {file, at.line, at.column}, std::move(what));
         return {};
     };
     std::vector<const XmlElement*> nodes, connections;
@@ -101,9 +101,9 @@ void Interpreter::oslPatterns(const Call& call, const scene::ShaderCall& given, 
     if (!namedAsNetwork(name)) name += ".xml";
     const std::string path = locate("OSL network", name, named.place, namedAsNetwork, "shader");
     if (path.empty()) return; // which is said
-    Diagnostics said;
-    const auto bytes = readWholeFile(path, limits::kShaderFileLooked, said);
-    for (const Diagnostic& d : said.all()) reporter.error(d.code, named.place, d.message, d.hint);
+    Diagnostics reported;
+    const auto bytes = readWholeFile(path, limits::kShaderFileLooked, reported);
+    for (const Diagnostic& d : reported.all()) reporter.error(d.code, named.place, d.message, d.hint);
     if (!bytes) return;
     Diagnostics faults;
     const auto network = oslNetwork(std::string_view(reinterpret_cast<const char*>(bytes->data()), bytes->size()), path, faults);

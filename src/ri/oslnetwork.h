@@ -11,15 +11,15 @@ namespace alpenglow::ri {
 
 /// A shader of a network, under a name that is its own there.
 struct OslNode {
-    std::string shader, layer;
+    std::string shader, layer; ///< name of the shader; of the layer
 };
 /// An output of a layer that gives a parameter of another its value.
 struct OslLink {
-    std::string from, output, to, parameter;
+    std::string from, output, to, parameter; ///< `output` of layer `from` to `parameter` of layer `to`
 };
 struct OslNetwork {
-    std::vector<OslNode> nodes;
-    std::vector<OslLink> links;
+    std::vector<OslNode> nodes; ///< in the order of the file
+    std::vector<OslLink> links; ///< in the order of the file
 };
 
 /// Reads a network. A node without <NodeLayer> has its <NodeId> as its name; connections name layers, or shaders where they name

@@ -39,16 +39,16 @@ std::unique_ptr<ParsedArchive> parseArchive(const std::string& path) {
     unsigned char magic[2] = {};
     std::ifstream(path, std::ios::binary).read(reinterpret_cast<char*>(magic), 2);
     if (!source || (magic[0] == 0x1f && magic[1] == 0x8b)) return nullptr; // what is packed may be of any size
-    Diagnostics said;
-    Reporter reporter(said);
+    Diagnostics reported;
+    Reporter reporter(reported);
     auto out = std::make_unique<ParsedArchive>();
     Parser parser(std::move(source), path, reporter);
-    for (Call call; parser.next(call) && said.all().empty();) {
+    for (Call call; parser.next(call) && reported.all().empty();) {
         if (out->calls.size() >= kCalls) return nullptr;
         out->calls.push_back(std::move(call));
     }
     out->end = parser.here();
-    return said.all().empty() ? std::move(out) : nullptr;
+    return reported.all().empty() ? std::move(out) : nullptr;
 }
 
 void ReadAhead::scan(const std::string& sceneFile) {

@@ -13,13 +13,14 @@ namespace alpenglow::ri {
 
 /// The requests of a file, and where it ends.
 struct ParsedArchive {
-    std::vector<Call> calls;
-    SourcePlace end;
+    std::vector<Call> calls; ///< in their order
+    SourcePlace end;         ///< behind the last one, for messages
 };
 
 /// The requests of a file. Null: packed, more than some thousand, or there is something to say about them.
 std::unique_ptr<ParsedArchive> parseArchive(const std::string& path);
 
+/// Parses archives on other threads before the scene reads them.
 class ReadAhead {
 public:
     /// Notes the archives that a scene names, in order: those of ReadArchive and DelayedReadArchive in plain text. Forgets what

@@ -13,9 +13,9 @@ class Nobody : public scene::FrameConsumer {
     void makeTexture(const std::string&, const std::vector<std::string>&, const scene::ParamList&, const SourcePlace&) override {}
 };
 
-void pass(std::unique_ptr<ByteSource> source, const std::string& name, RequestReceiver& to, Diagnostics& said,
+void pass(std::unique_ptr<ByteSource> source, const std::string& name, RequestReceiver& to, Diagnostics& reported,
           const StopFlag* stop) {
-    Reporter reporter(said);
+    Reporter reporter(reported);
     Parser parser(inflating(std::move(source)), name, reporter,
                   [&](const std::string& kind, const std::string& text) { to.comment(kind, text); });
     parser.unknown = [&](const std::string& n, const std::vector<Value>& values) { to.unknown(n, values); };
@@ -26,30 +26,30 @@ void pass(std::unique_ptr<ByteSource> source, const std::string& name, RequestRe
 
 } // namespace
 
-bool passOn(const std::string& path, RequestReceiver& to, Diagnostics& said, const StopFlag* stop) {
+bool passOn(const std::string& path, RequestReceiver& to, Diagnostics& reported, const StopFlag* stop) {
     std::string why;
     const bool standard = path == "-";
     auto source = standard ? standardInput(stop) : fileSource(path, &why, false, stop);
     if (!source) {
-        said.report(Severity::Error, Rie::NoFile, {path, 0, 0}, "the file cannot be read: " + why);
+        reported.report(Severity::Error, Rie::NoFile, {path, 0, 0}, "the file cannot be read: " + why);
         return false;
     }
-    pass(std::move(source), standard ? "standard input" : path, to, said, stop);
+    pass(std::move(source), standard ? "standard input" : path, to, reported, stop);
     return true;
 }
 
-void passOnText(const std::string& text, const std::string& name, RequestReceiver& to, Diagnostics& said) {
-    pass(memorySource(text), name, to, said, nullptr);
+void passOnText(const std::string& text, const std::string& name, RequestReceiver& to, Diagnostics& reported) {
+    pass(memorySource(text), name, to, reported, nullptr);
 }
 
-bool passOnExpanded(const std::string& path, ReaderOptions options, RequestReceiver& to, Diagnostics& said) {
+bool passOnExpanded(const std::string& path, ReaderOptions options, RequestReceiver& to, Diagnostics& reported) {
     options.executed = [&](const Call& c) { to.request(c); };
     options.unknown = [&](const std::string& n, const std::vector<Value>& values) { to.unknown(n, values); };
     options.comments = [&](const std::string& kind, const std::string& text) { to.comment(kind, text); };
     Nobody nobody;
-    RibReader reader(std::move(options), nobody, said);
+    RibReader reader(std::move(options), nobody, reported);
     if (reader.readFile(path)) return true;
-    const std::vector<Diagnostic> all = said.all();
+    const std::vector<Diagnostic> all = reported.all();
     return std::none_of(all.begin(), all.end(),
                         [&](const Diagnostic& d) { return d.code == Rie::NoFile && d.place.file == path && d.place.line == 0; });
 }

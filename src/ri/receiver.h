@@ -11,6 +11,7 @@ namespace alpenglow::ri {
 class RequestReceiver {
 public:
     virtual ~RequestReceiver() = default;
+    /// The next request; the call may change afterwards.
     virtual void request(const Call&) = 0;
     /// One that is not in the table, with all values up to the next name.
     virtual void unknown(const std::string& name, const std::vector<Value>& values) = 0;
@@ -23,11 +24,11 @@ public:
 /// The requests of a file as they stand: no archive is read, no condition decided, nothing executed, so that streams of any
 /// length pass in bounded memory. "-": standard input. Bad requests are reported and left out. False: the file cannot be read,
 /// which was reported.
-bool passOn(const std::string& path, RequestReceiver& to, Diagnostics& said, const StopFlag* stop = nullptr);
+bool passOn(const std::string& path, RequestReceiver& to, Diagnostics& reported, const StopFlag* stop = nullptr);
 /// The same for text in memory.
-void passOnText(const std::string& text, const std::string& name, RequestReceiver& to, Diagnostics& said);
+void passOnText(const std::string& text, const std::string& name, RequestReceiver& to, Diagnostics& reported);
 /// The requests of a file as a reader of these options executes them: in place of archives, and of procedurals that may be made,
 /// what is in them; conditions are decided. All that the reader checks is checked.
-bool passOnExpanded(const std::string& path, ReaderOptions options, RequestReceiver& to, Diagnostics& said);
+bool passOnExpanded(const std::string& path, ReaderOptions options, RequestReceiver& to, Diagnostics& reported);
 
 } // namespace alpenglow::ri

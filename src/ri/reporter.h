@@ -8,7 +8,9 @@ namespace alpenglow::ri {
 /// Reports to a Diagnostics, which must outlive it.
 class Reporter {
 public:
+    /// d: receives the messages.
     explicit Reporter(Diagnostics& d) : sink_(d) {}
+    /// Report one message at a place.
     void report(Severity, Rie, const SourcePlace&, std::string message, std::string hint = {});
     void error(Rie c, const SourcePlace& p, std::string m, std::string hint = {}) {
         report(Severity::Error, c, p, std::move(m), std::move(hint));

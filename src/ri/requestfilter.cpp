@@ -96,9 +96,9 @@ void RequestFilter::comment(const std::string& kind, const std::string& text) {
     if (skipped_ == 0 && rules_.only.empty()) to_.comment(kind, text);
 }
 
-std::vector<Call> requestsOf(const std::string& text, const std::string& name, Diagnostics& said) {
+std::vector<Call> requestsOf(const std::string& text, const std::string& name, Diagnostics& reported) {
     Collected c;
-    passOnText(text, name, c, said);
+    passOnText(text, name, c, reported);
     return std::move(c.calls);
 }
 

@@ -28,19 +28,22 @@ private:
 
 /// What RequestFilter does.
 struct FilterRules {
+    /// Requests that replace others.
     struct Replacement {
-        RequestPattern of;
-        std::vector<Call> by;
+        RequestPattern of;    ///< what is replaced
+        std::vector<Call> by; ///< empty: nothing takes its place
     };
     std::vector<int> frames;               ///< FrameBegin blocks of these numbers stay, and what is outside; empty: all
     std::vector<Call> before;              ///< put in before the first request, behind the version
     std::vector<Replacement> replacements; ///< the first that fits counts; the result is not replaced again
-    std::vector<RequestPattern> drop;
-    std::vector<RequestPattern> only; ///< not empty: what fits none is left out
+    std::vector<RequestPattern> drop;      ///< what fits one of these is left out
+    std::vector<RequestPattern> only;      ///< not empty: what fits none is left out
 };
 
+/// Applies rules to a stream and passes on the result.
 class RequestFilter : public RequestReceiver {
 public:
+    /// to: receives what stays; it must outlive this.
     RequestFilter(FilterRules rules, RequestReceiver& to) : rules_(std::move(rules)), to_(to) {}
     void request(const Call&) override;
     void unknown(const std::string& name, const std::vector<Value>& values) override;
@@ -64,7 +67,7 @@ private:
     std::set<int> frames_;
 };
 
-/// Requests in text. Messages are added to `said`.
-std::vector<Call> requestsOf(const std::string& text, const std::string& name, Diagnostics& said);
+/// Requests in text. Messages are added to `reported`.
+std::vector<Call> requestsOf(const std::string& text, const std::string& name, Diagnostics& reported);
 
 } // namespace alpenglow::ri

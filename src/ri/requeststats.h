@@ -13,8 +13,9 @@ namespace alpenglow::ri {
 /// Counts of requests, for `alpenglow rib --stats`.
 class RequestStats {
 public:
+    /// Sums over requests.
     struct Count {
-        uint64_t times = 0;
+        uint64_t times = 0;   ///< requests
         uint64_t numbers = 0; ///< in its arguments and parameters
         uint64_t bytes = 0;   ///< about what they take in binary: four for a number
     };
@@ -23,11 +24,11 @@ public:
     void addUnknown(const std::string& name, const std::vector<Value>& values);
 
     std::map<std::string, Count> requests; ///< by name
-    Count all, primitives, lights;
-    uint64_t frames = 0, worlds = 0;
-    int depth = 0;                  ///< of blocks
-    std::set<std::string> shaders;  ///< named by Surface and its like, LightSource and Shader
-    std::set<std::string> archives; ///< named by ReadArchive and procedurals that read one
+    Count all, primitives, lights;         ///< all requests, primitives, light sources
+    uint64_t frames = 0, worlds = 0;       ///< blocks
+    int depth = 0;                         ///< of blocks
+    std::set<std::string> shaders;         ///< named by Surface and its like, LightSource and Shader
+    std::set<std::string> archives;        ///< named by ReadArchive and procedurals that read one
 
     RequestStats() = default;
     RequestStats(const RequestStats&) = delete;

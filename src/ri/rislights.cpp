@@ -168,9 +168,9 @@ void Interpreter::addProfile(Call& call) {
     const SourcePlace place = call.at(*named);
     const std::string path = locate("light profile", name, place, namedAsProfile);
     if (path.empty()) return; // reported by locate()
-    Diagnostics said;
-    const auto bytes = readWholeFile(path, limits::kShaderFileLooked, said);
-    for (Diagnostic d : said.all()) reporter.error(d.code, place, d.message, d.hint);
+    Diagnostics reported;
+    const auto bytes = readWholeFile(path, limits::kShaderFileLooked, reported);
+    for (Diagnostic d : reported.all()) reporter.error(d.code, place, d.message, d.hint);
     if (!bytes) return;
     std::string why;
     const auto profile = lightProfile({bytes->begin(), bytes->end()}, why);

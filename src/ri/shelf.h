@@ -13,11 +13,13 @@ class ArchiveShelf {
 public:
     static constexpr uint64_t kArchive = 1u << 20; ///< bytes of an archive that is kept, at most
     static constexpr uint64_t kAll = 16u << 20;    ///< of all that are kept
+    /// Where a look-up led.
     struct Found {
         std::string file, key; ///< name for messages; path without links, which identifies the file
     };
     /// The answer that was noted for a look-up (name and search path as text); null: none, or the file has gone.
     const Found* found(const std::string& question) const;
+    /// Keeps an answer until forgetPlaces().
     void note(const std::string& question, Found answer) { found_.insert_or_assign(question, std::move(answer)); }
 
     /// The requests of a file as it is now, parsed at most once. Null: read the file in the ordinary way, because it is too large

@@ -12,8 +12,8 @@ namespace alpenglow::ri {
 
 /// How a stream is written.
 struct RibFormat {
-    bool binary = false;
-    bool gzip = false;
+    bool binary = false; ///< else ASCII
+    bool gzip = false;   ///< compressed by gzip
     int indentation = 4; ///< ASCII: blanks for each block around a request
     int columns = 100;   ///< ASCII: longer requests go on in further lines; 0: they do not
 };
@@ -25,6 +25,7 @@ class RibEncoder;
 /// them. Unless ColorSamples was written: then those, too, are kept to the bit.
 class RibWriter {
 public:
+    /// Receives the bytes.
     RibWriter(std::unique_ptr<ByteSink>, RibFormat = {});
     /// Passes unfinished output on without reporting failures; finish() reports them.
     ~RibWriter();

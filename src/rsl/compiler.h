@@ -15,14 +15,14 @@ namespace alpenglow::rsl {
 
 /// A shader parameter as declared.
 struct ParameterInfo {
-    std::string name;
-    Type type; ///< arrays of open length: the length of their default
-    Storage storage = Storage::Uniform;
-    bool output = false;
-    bool hasDefault = false;
-    Place place;
-    bool open = false;          ///< an array of open length, `float w[]`: as long as its value
-    bool handle = false;        ///< of type `shader`
+    std::string name;                   ///< as declared
+    Type type;                          ///< arrays of open length: the length of their default
+    Storage storage = Storage::Uniform; ///< uniform or varying
+    bool output = false;                ///< an output
+    bool hasDefault = false;            ///< the shader says one
+    Place place;                        ///< of the declaration
+    bool open = false;                  ///< an array of open length, `float w[]`: as long as its value
+    bool handle = false;                ///< of type `shader`
     bool sampleDefault = false; ///< varying, with a default that differs from sample to sample: computed where the shader begins
     std::vector<std::string> defaultReads; ///< parameters before it that its default reads
 };
@@ -31,6 +31,7 @@ struct ParameterInfo {
 class CompiledShader {
 public:
     const std::string& path() const { return path_; } ///< the file; or the name given to loadText
+    /// What the shader declares.
     const std::string& name() const { return shader_->name; }
     ShaderKind kind() const { return shader_->kind; }
     const std::vector<ParameterInfo>& parameters() const { return parameters_; }
@@ -56,9 +57,9 @@ using SpaceFn = std::function<bool(const std::string& from, const std::string& t
 
 /// Counters of a compiler since its construction.
 struct CompilerStatistics {
-    int compiled = 0; ///< kernels for which code was generated
-    int fromDisk = 0; ///< kernels from the disk cache
-    int fromMemory = 0;
+    int compiled = 0;   ///< kernels for which code was generated
+    int fromDisk = 0;   ///< kernels from the disk cache
+    int fromMemory = 0; ///< kernels compiled before by this compiler
     double seconds = 0; ///< of building, optimising and code generation, summed over threads
 };
 
@@ -70,15 +71,16 @@ public:
     struct Settings {
         std::string cacheDirectory;  ///< "": none
         bool useDefaultCache = true; ///< take jit::defaultCacheDirectory() when cacheDirectory is empty
-        std::vector<std::pair<std::string, std::string>> defines;
-        std::string dialect;                  ///< whose macros are predefined: FrontOptions::dialect
-        bool rispecSpecular = false;          ///< FrontOptions::rispecSpecular
-        bool lint = false;                    ///< warnings for authors of shaders (front/lint.h)
-        bool keepWritten = false;             ///< FrontOptions::keepWritten
+        std::vector<std::pair<std::string, std::string>> defines; ///< macros: name and text
+        std::string dialect;                                      ///< whose macros are predefined: FrontOptions::dialect
+        bool rispecSpecular = false;                              ///< FrontOptions::rispecSpecular
+        bool lint = false;                                        ///< warnings for authors of shaders (front/lint.h)
+        bool keepWritten = false;                                 ///< FrontOptions::keepWritten
         bool allowExec = false;               ///< `plugin "name"` loads code (rsl/plugins.h); else it is an error that says so
         std::vector<std::string> pluginPaths; ///< where plug-ins are searched, after the folder of the shader
         std::shared_ptr<ReadLog> reads;       ///< gets every source that is read or missed; may be null
     };
+    /// With default settings, or with these.
     ShaderCompiler();
     explicit ShaderCompiler(Settings);
     ~ShaderCompiler();

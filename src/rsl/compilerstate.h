@@ -15,14 +15,15 @@ namespace alpenglow::rsl {
 
 /// The members of ShaderCompiler: its caches, and what they share.
 struct ShaderCompiler::State {
-    Settings settings;
-    std::unique_ptr<jit::KernelCache> cache;
-    std::atomic<bool> cacheRefused = false; ///< which was reported
-    mutable std::mutex mutex;
-    std::map<std::string, std::shared_future<std::shared_ptr<const CompiledShader>>> shaders;
-    std::map<std::string, std::shared_future<std::shared_ptr<const CompiledKernel>>> kernels;
-    CompilerStatistics statistics;
-    PluginLibrary plugins;
+    Settings settings;                       ///< of the constructor
+    std::unique_ptr<jit::KernelCache> cache; ///< of compiled kernels on disk; null: none
+    std::atomic<bool> cacheRefused = false;  ///< which was reported
+    mutable std::mutex mutex;                ///< guards the members below
+    std::map<std::string, std::shared_future<std::shared_ptr<const CompiledShader>>> shaders; ///< by path or text, with options
+    std::map<std::string, std::shared_future<std::shared_ptr<const CompiledKernel>>> kernels; ///< by key
+    CompilerStatistics statistics;                                                            ///< counters so far
+    PluginLibrary plugins;                                                                    ///< plug-ins that were loaded
+    /// Address of a plug-in's function, for linking; null: there is none.
     std::function<void*(const std::string&)> outside = [this](const std::string& name) { return plugins.address(name); };
 
     /// The options of the front end that the settings mean.

@@ -19,11 +19,11 @@ struct EvaluationPoint {
 
 /// The result of evaluate().
 struct Evaluation {
-    bool ok = false;
-    Type type; ///< of the expression; Void when it was a statement
-    std::vector<float> numbers;
-    std::string text;    ///< formatted: numbers as %.7g separated by spaces, a string as it is
-    std::string printed; ///< by printf()
+    bool ok = false;            ///< false: errors were reported
+    Type type;                  ///< of the expression; Void when it was a statement
+    std::vector<float> numbers; ///< element after element; empty for strings
+    std::string text;           ///< formatted: numbers as %.7g separated by spaces, a string as it is
+    std::string printed;        ///< by printf()
 };
 
 /// A ServiceFn for a kernel, by which the caller answers what this folder cannot, such as maps. Returns false if it does not

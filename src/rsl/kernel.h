@@ -33,7 +33,8 @@ struct KernelCall {
     int32_t stride;         ///< floats between rows; a multiple of 64; rows are 64-byte aligned
     const int32_t* strings; ///< ids of the kernel's string constants (CompiledKernel::strings), in order
     void* user;             ///< the caller's
-    ServiceFn service;
+    ServiceFn service;      ///< answers calls of services, and takes pairs
+    /// The steps of a loop, as above.
     int32_t (*lightBegin)(KernelCall*, int32_t site, int32_t first, uint64_t mask, int32_t lanes, const float* pAxisAngle);
     uint64_t (*lightFetch)(KernelCall*, int32_t site, int32_t light, int32_t first, uint64_t mask, int32_t lanes, float* lClOl);
     void (*lightEnd)(KernelCall*, int32_t site, int32_t first, int32_t lanes);
@@ -56,7 +57,8 @@ inline constexpr size_t kMemoryAlign = 256;
 
 /// Memory for the large local arrays of a kernel while it runs.
 struct LocalMemory {
-    void* bytes;
+    void* bytes; ///< aligned to kMemoryAlign
+    /// size: bytes. Throws std::bad_alloc.
     explicit LocalMemory(uint64_t size) : bytes(::operator new(size, std::align_val_t(kMemoryAlign))) {}
     ~LocalMemory() { ::operator delete(bytes, std::align_val_t(kMemoryAlign)); }
     LocalMemory(const LocalMemory&) = delete;
@@ -81,31 +83,31 @@ int32_t internRuntimeString(const std::string&, bool& full);
 
 /// A parameter with a value. Strings for string types, else numbers, element after element.
 struct ParameterValue {
-    std::string name;
-    Type type;
+    std::string name; ///< of the parameter
+    Type type;        ///< of the value
     std::vector<float> numbers;
-    std::vector<std::string> strings;
+    std::vector<std::string> strings; ///< element after element
 };
 
 /// A shader that other shaders call (3Delight manual, 6.4.9), with the values of its parameters.
 struct CoShader {
-    std::string handle;
-    const Program* program = nullptr;
+    std::string handle;               ///< of the declaration
+    const Program* program = nullptr; ///< its checked text; shared with the compiler
     const Shader* shader = nullptr;
-    std::shared_ptr<const void> owner; ///< keeps both
-    std::string digest;                ///< of the shader's text
-    std::map<std::string, std::vector<float>> numbers;
-    std::map<std::string, std::string> strings;
-    Connections connections;
-    std::vector<std::string> computed; ///< KernelOptions::computedParameters of this one
-    std::string space;                 ///< what the renderer calls its "shader" space; empty: that of the shader that calls
-    bool light = false;                ///< a light of the scene: the renderer determines its light and outputs
+    std::shared_ptr<const void> owner;                 ///< keeps both
+    std::string digest;                                ///< of the shader's text
+    std::map<std::string, std::vector<float>> numbers; ///< element after element
+    std::map<std::string, std::string> strings;        ///< by parameter
+    Connections connections;                           ///< of RIS
+    std::vector<std::string> computed;                 ///< KernelOptions::computedParameters of this one
+    std::string space;  ///< what the renderer calls its "shader" space; empty: that of the shader that calls
+    bool light = false; ///< a light of the scene: the renderer determines its light and outputs
 };
 
 /// A parameter that gather() statements may send texts to, or an array whose length is open: InputName::sent.
 struct SentParameter {
-    std::string name;
-    int room = 1; ///< elements that come at most; of no array 1
+    std::string name; ///< of the parameter
+    int room = 1;     ///< elements that come at most; of no array 1
     bool operator==(const SentParameter&) const = default;
 };
 
@@ -141,6 +143,7 @@ struct KernelOptions {
 class CompiledKernel {
 public:
     virtual ~CompiledKernel() = default;
+    /// Of the kernel that it was compiled from.
     const std::vector<ir::Input>& inputs() const { return inputs_; }
     const std::vector<ir::OutputSlot>& outputs() const { return outputs_; }
     const std::vector<ir::Site>& sites() const { return sites_; }
@@ -148,6 +151,7 @@ public:
     const ir::KernelFacts& facts() const { return facts_; }
     const std::vector<int32_t>& strings() const { return strings_; }
     int lanes() const { return lanes_; } ///< points per strip: KernelOptions::lanes * vectors
+    /// It was read from disk.
     bool fromCache() const { return fromCache_; }
 
     /// Non-suspending kernels: shades all n points. Throws std::bad_alloc when there is no memory for the shader's arrays.

@@ -21,9 +21,9 @@ std::unique_ptr<Program> compileOsl(const std::string& path, const FrontOptions&
     const auto rsl = bytes ? front::rslFromOsl({bytes->begin(), bytes->end()}, path, diagnostics) : std::nullopt;
     if (!rsl) return nullptr;
     text = *rsl;
-    Diagnostics said;
-    auto program = compileText(text, path, options, said);
-    for (const Diagnostic& m : said.all())
+    Diagnostics reported;
+    auto program = compileText(text, path, options, reported);
+    for (const Diagnostic& m : reported.all())
         if (m.severity >= Severity::Error) diagnostics.report(m);
     return program;
 }

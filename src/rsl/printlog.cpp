@@ -44,7 +44,7 @@ void PrintLog::add(const PrintKey& key, const std::string& text) {
 
 void PrintLog::once(const std::string& where, const std::string& program, const std::string& text) {
     const std::lock_guard lock(mutex_);
-    if (saidBytes_ > limits::kPrintBytes || !said_.insert({where, text}).second) return;
+    if (saidBytes_ > limits::kPrintBytes || !reported_.insert({where, text}).second) return;
     saidBytes_ += where.size() + text.size();
     PrintKey key;
     key.program = program;
@@ -73,7 +73,7 @@ bool PrintLog::pending() {
 }
 
 void PrintLog::goOn(PrintLog& from) {
-    for (const auto& said : from.said_) said_.insert(said);
+    for (const auto& reported : from.reported_) reported_.insert(reported);
     std::erase_if(messages_, [&](const Message& m) { return m.lasting; });
     for (Message& m : from.messages_) keep(std::move(m));
     for (Run& r : from.runs_) runs_.push_back(std::move(r));

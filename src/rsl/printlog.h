@@ -19,9 +19,9 @@ namespace alpenglow::rsl {
 
 /// Where a message belongs: samples first, within a sample the pixels row by row, within a pixel the path from the camera on.
 struct PrintKey {
-    int64_t sample = -1; ///< -1: before all samples (dicing)
-    int32_t y = 0, x = 0;
-    int32_t bounces = 0;
+    int64_t sample = -1;          ///< -1: before all samples (dicing)
+    int32_t y = 0, x = 0;         ///< pixel
+    int32_t bounces = 0;          ///< since the camera
     uint32_t vertex = 0;          ///< hash of the path to the point
     std::string program;          ///< file of the shader
     std::array<float, 3> place{}; ///< the point: shaders of lights run for several of one vertex
@@ -37,6 +37,7 @@ class PrintLog {
 public:
     /// Messages of one call at one point: a loop that prints would fill the disk. The others are counted.
     static constexpr size_t kOfOneCall = 10'000;
+    /// To: the stream of flush(). most: bytes kept until then; further messages are counted.
     explicit PrintLog(std::FILE* to = stdout, size_t most = limits::kPrintBytes) : most_(most), to_(to) {}
     ~PrintLog() { flush(); }
     PrintLog(const PrintLog&) = delete;
@@ -86,9 +87,9 @@ private:
     size_t most_;
     std::mutex mutex_;
     std::vector<Message> messages_;
-    Counts kept_;                                        ///< since the last run
-    Counts lost_;                                        ///< that were too many to be kept
-    std::set<std::pair<std::string, std::string>> said_; ///< by once()
+    Counts kept_;                                            ///< since the last run
+    Counts lost_;                                            ///< that were too many to be kept
+    std::set<std::pair<std::string, std::string>> reported_; ///< by once()
     size_t saidBytes_ = 0;
     size_t bytes_ = 0;
     std::FILE* to_;

@@ -10,8 +10,8 @@ namespace alpenglow::rsl {
 /// A value handed to format() or printf().
 struct FormatValue {
     Base base = Base::Float; ///< Float, Color..Normal, Matrix or String
-    float numbers[16] = {};
-    std::string text;
+    float numbers[16] = {};  ///< the first componentCount() count
+    std::string text;        ///< of String
 };
 
 /// format(): %f %e %g %d %p %c %m %s %h with flags, width and precision; %% is a percent sign. A conversion without a value is

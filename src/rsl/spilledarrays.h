@@ -17,6 +17,7 @@ inline constexpr size_t kSpilledArrayBytes = size_t(256) << 20;
 /// The elements of resizable arrays beyond the memory of the kernel, for one run. For one thread.
 class SpilledArrays {
 public:
+    /// most: bytes of one run; more is an error.
     explicit SpilledArrays(size_t most = kSpilledArrayBytes) : most_(most) {}
     /// Answers a service on arrays: "arraystore" gives the length that the array has with this element at least, "arrayload" the
     /// element, 0 where there is none; "arrayresize" the length that it gets. A length that there is no memory for is reported
@@ -25,6 +26,7 @@ public:
                 const std::vector<std::string>* files);
     /// Gives the memory back; for the next run.
     void clear();
+    /// Memory in use.
     size_t bytes() const { return bytes_; }
 
 private:

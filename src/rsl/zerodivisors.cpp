@@ -52,13 +52,13 @@ void fixParameters(KernelOptions& options, const std::map<std::string, std::vect
 std::vector<SourcePlace> divisionsByZero(const Program& program, const Shader& shader, KernelOptions options,
                                          const std::map<std::string, std::vector<float>>& numbers) {
     fixParameters(options, numbers);
-    Diagnostics quiet, said; // compiling the kernel has reported the others
+    Diagnostics quiet, reported; // compiling the kernel has reported the others
     std::vector<SourcePlace> places;
     const auto kernel = buildKernel(program, shader, options, quiet);
     if (!kernel) return places;
     passes::simplify(*kernel, options);
-    passes::warnOfZeroDivisions(*kernel, said);
-    for (const Diagnostic& d : said.all()) places.push_back(d.place);
+    passes::warnOfZeroDivisions(*kernel, reported);
+    for (const Diagnostic& d : reported.all()) places.push_back(d.place);
     return places;
 }
 

@@ -7,7 +7,7 @@ namespace alpenglow::scene {
 
 /// Values of a primitive variable, by class.
 struct VariableCounts {
-    int64_t uniform = 1, varying = 0, vertex = 0, faceVarying = 0;
+    int64_t uniform = 1, varying = 0, vertex = 0, faceVarying = 0; ///< numbers of values
     /// Elements of a variable of this class; constant: 1.
     int64_t of(Class c) const;
 };

@@ -14,6 +14,7 @@ struct FilterLink {
     std::string groups;        ///< "linkingGroups" of the filter; "": it acts on everything
     /// The text that of() reads. Handles and groups may hold anything but line ends, which become blanks.
     std::string text() const;
+    /// The reverse; nothing: the text is none of text().
     static std::optional<FilterLink> of(const std::string& text);
     /// Whether the filter acts on the light that a primitive with these attributes receives; null: nothing is known of it.
     /// EnableLightFilter decides; else a filter without groups acts, one with groups where "lightfilter:subset" names one of

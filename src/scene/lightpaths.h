@@ -37,27 +37,28 @@ public:
     /// The most of what all expressions of a frame may need together. More is an error.
     static constexpr size_t kMostPositions = 1024;        ///< letters and brackets, repetitions written out
     static constexpr size_t kMostTable = size_t(1) << 18; ///< states times kinds of events
-    static constexpr size_t kMostStates = 4096;
-    static constexpr size_t kMostLabels = 32;
-    static constexpr size_t kMostOutputs = 64;
-    static constexpr size_t kMostParts = 64;
-    static constexpr size_t kMostLength = 4096; ///< characters of an expression
-    static constexpr int kMostDepth = 64;       ///< parentheses in parentheses
+    static constexpr size_t kMostStates = 4096;           ///< of the automaton
+    static constexpr size_t kMostLabels = 32;             ///< named in expressions
+    static constexpr size_t kMostOutputs = 64;            ///< expressions
+    static constexpr size_t kMostParts = 64;              ///< different sums of outputs
+    static constexpr size_t kMostLength = 4096;           ///< characters of an expression
+    static constexpr int kMostDepth = 64;                 ///< parentheses in parentheses
 
-    using State = uint16_t;
+    using State = uint16_t;           ///< index of a state
     static constexpr State kNone = 0; ///< of unclassified light: next() keeps it
     static constexpr State kDead = 1; ///< no expression can match any more
 
     /// "other": all that no expression of the frame matches.
     struct Source {
         std::string expression;
-        SourcePlace place;
+        SourcePlace place; ///< of the request, for messages
     };
     /// Expressions that are wrong, or too large together, are reported, and their outputs have no parts.
     LightPaths(std::span<const Source>, Diagnostics&);
 
     /// The number of a label that some expression names; -1: none does.
     int label(std::string_view) const;
+    /// Whether some expression names a label.
     bool hasLabels() const { return !labels_.empty(); }
     /// The number of an event with up to two labels, by label(). Pairs of event and scattering that are none are Object.
     int symbol(PathEvent, PathScattering = PathScattering::None, int labelA = -1, int labelB = -1) const;

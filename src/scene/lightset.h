@@ -15,12 +15,15 @@ public:
     using Run = std::pair<int, int>; ///< [first, second)
 
     LightSet() = default;
+    /// Indices in any order, none negative; repeated ones count once.
     LightSet(std::initializer_list<int> lights) : LightSet(std::vector<int>(lights)) {}
     explicit LightSet(const std::vector<int>& lights) {
         for (int l : lights) insert(l);
     }
 
+    /// No light.
     bool empty() const { return runs_.empty(); }
+    /// Number of lights.
     size_t size() const {
         size_t n = 0;
         for (const Run& r : runs_) n += size_t(r.second - r.first);
@@ -73,6 +76,7 @@ public:
     }
     /// The last one; only where there is one.
     int last() const { return runs_.back().second - 1; }
+    /// Removes all lights.
     void clear() { runs_.clear(); }
     /// Ascending, with gaps between them.
     const std::vector<Run>& runs() const { return runs_; }
@@ -80,12 +84,14 @@ public:
     /// Visits the lights one by one, ascending.
     class const_iterator {
     public:
+        /// What the standard library asks of an iterator.
         using iterator_category = std::forward_iterator_tag;
         using value_type = int;
         using difference_type = std::ptrdiff_t;
         using pointer = const int*;
         using reference = int;
         const_iterator() = default;
+        /// A forward iterator over the lights of the runs.
         const_iterator(const Run* run, const Run* end) : run_(run), end_(end), light_(run == end ? 0 : run->first) {}
         int operator*() const { return light_; }
         const_iterator& operator++() {
@@ -110,6 +116,7 @@ public:
 
     bool operator==(const LightSet&) const = default;
     auto operator<=>(const LightSet&) const = default;
+    /// list: ascending.
     bool operator==(const std::vector<int>& o) const { return std::equal(begin(), end(), o.begin(), o.end()); }
 
 private:

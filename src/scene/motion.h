@@ -13,10 +13,12 @@ Transform compose(const Transform& a, const Transform& b);
 /// When the shutter is open, in units of motion blocks: Shutter (RISpec 3.2, 4.1.1), Option "shutter" "offset". One that closes
 /// before it opens never opens for longer than its first instant.
 struct Shutter {
-    double open = 0, close = 0;
+    double open = 0, close = 0; ///< times
+    /// It is open for longer than an instant.
     bool opens() const { return close > open; }
     /// The time of a fraction of the open shutter: 0 open, 1 close.
     double at(double part) const { return open + (close - open) * part; }
+    /// Of the frame's options.
     explicit Shutter(const Options&);
     Shutter() = default;
 };

@@ -19,14 +19,14 @@ int componentCount(Type);
 
 /// One parameter of a request: a primitive variable, a shader parameter, an option or attribute value.
 struct Param {
-    std::string name;
-    Class cls = Class::Uniform;
-    Type type = Type::Float;
+    std::string name;                 ///< without the declaration
+    Class cls = Class::Uniform;       ///< storage class
+    Type type = Type::Float;          ///< of an element
     int arrayLength = 0;              ///< 0 = not an array
     bool declared = true;             ///< false: type guessed from the values; a shader's own declaration decides
     std::vector<float> numbers;       ///< all numeric types, flattened (integers too)
     std::vector<std::string> strings; ///< Type::String
-    SourcePlace place;
+    SourcePlace place;                ///< of the token
 };
 using ParamList = std::vector<Param>;
 /// The first parameter of this name; null if there is none.
@@ -36,10 +36,13 @@ const Param* find(const ParamList&, std::string_view name);
 /// linearly, element by element; outside hold the end. (A moving Rotate comes with keys close enough for that.)
 template <class T> struct Moving {
     std::vector<float> times{0};
-    std::vector<T> keys{T{}};
+    std::vector<T> keys{T{}}; ///< as many as times
     Moving() = default;
+    /// Without motion.
     Moving(T v) : keys{std::move(v)} {}
+    /// The value, or the one of the first time.
     const T& first() const { return keys.front(); }
+    /// It has several keys.
     bool moves() const { return keys.size() > 1; }
 };
 using Transform = Moving<Matrix>;
@@ -50,15 +53,15 @@ struct Connection {
     std::string parameter;
     int element = -1; ///< of an array; -1: the parameter is none
     std::string handle, output;
-    SourcePlace place;
+    SourcePlace place; ///< of the parameter, for messages
 };
 
 /// A shader call: Surface "plastic" "Kd" .5
 struct ShaderCall {
-    std::string name;
-    ParamList params;
-    Transform toWorld; ///< "shader" space to world: the CTM at the call
-    SourcePlace place;
+    std::string name;                         ///< as in the request
+    ParamList params;                         ///< in their order
+    Transform toWorld;                        ///< "shader" space to world: the CTM at the call
+    SourcePlace place;                        ///< of the request
     std::string handle = {};                  ///< of the Bxdf; "": of another request
     std::vector<Connection> connections = {}; ///< of RIS; in their order
 };
@@ -67,7 +70,7 @@ using ShaderRef = std::shared_ptr<const ShaderCall>;
 /// Rows as in RISpec 3.2, 5.2: value at t = (t^3 t^2 t 1) * m * (P0 P1 P2 P3). Bezier by default.
 struct Basis {
     double m[4][4] = {{-1, 3, -3, 1}, {3, -6, 3, 0}, {-3, 3, 0, 0}, {1, 0, 0, 0}};
-    int step = 3;
+    int step = 3;                ///< step between the starts of neighbouring segments (RISpec 3.2, 5.2)
     std::string name = "bezier"; ///< "" for a matrix of the file's own
 };
 

@@ -16,21 +16,21 @@ namespace alpenglow::scene {
 
 /// The attribute state, an immutable snapshot shared by the primitives that were made under it.
 struct Attributes {
-    Color color{1}, opacity{1};
+    Color color{1}, opacity{1};                                      ///< linear
     ShaderRef surface, displacement, atmosphere, interior, exterior; ///< null = none (surface: the default surface)
-    LightSet lights;    ///< indices into Frame::lights that are on, in order of declaration
-    int areaLight = -1; ///< index into Frame::lights when primitives made now are its geometry
-    float shadingRate = 1;
-    bool smoothShading = false; ///< ShadingInterpolation "smooth"
-    bool matte = false;
-    int sides = 2;
+    LightSet lights;                 ///< indices into Frame::lights that are on, in order of declaration
+    int areaLight = -1;              ///< index into Frame::lights when primitives made now are its geometry
+    float shadingRate = 1;           ///< pixels, area of a micropolygon
+    bool smoothShading = false;      ///< ShadingInterpolation "smooth"
+    bool matte = false;              ///< Matte: a hole in the picture
+    int sides = 2;                   ///< 1 or 2
     bool inside = false;             ///< Orientation flag relative to the CTM's handedness ("inside", ReverseOrientation)
     bool absoluteHandedness = false; ///< Orientation "lh"/"rh" was given: then `rightHanded` decides, whatever the CTM
-    bool rightHanded = false;
-    float textureCoordinates[8] = {0, 0, 1, 0, 0, 1, 1, 1};
-    Basis ubasis, vbasis;
-    std::optional<std::vector<float>> bound, detail; ///< six numbers, object space
-    float detailRange[4] = {0, 0, 1e38f, 1e38f};
+    bool rightHanded = false;        ///< "rh" was given
+    float textureCoordinates[8] = {0, 0, 1, 0, 0, 1, 1, 1}; ///< s and t at the corners of a patch (RISpec 3.2, 4.2)
+    Basis ubasis, vbasis;                                   ///< of patches and curves, along u and v
+    std::optional<std::vector<float>> bound, detail;        ///< six numbers, object space
+    float detailRange[4] = {0, 0, 1e38f, 1e38f}; ///< minvisible lowertransition uppertransition maxvisible: pixels, area
     Matrix detailSpace; ///< of `detail`: object space at the request, to world (in an Object: to its own space)
     /// Attribute "class" "name" value, keyed "class:name" (also "user:x");
     /// GeometricApproximation as "GeometricApproximation:motionfactor".
@@ -84,11 +84,11 @@ struct Primitive {
     std::vector<int> ints, ints2, ints3;
     std::vector<std::string> strings;
     ParamList params;
-    AttributesRef attributes;
-    Transform toWorld; ///< object to world; for primitives inside an Object: object to the object's own space
+    AttributesRef attributes; ///< never null
+    Transform toWorld;        ///< object to world; for primitives inside an Object: object to the object's own space
     std::vector<float> motionTimes;
     std::vector<std::shared_ptr<Primitive>> motionKeys;
-    SourcePlace place;
+    SourcePlace place; ///< of the request
     /// Inside an Object only: attributes were set between ObjectBegin and here, so they hold in every instance.
     /// Otherwise an instance's own attributes count (RISpec 3.2, 5.10). Never null either way.
     bool attributesInside = false;
@@ -98,8 +98,8 @@ using PrimitiveRef = std::shared_ptr<const Primitive>;
 
 /// LightSource or AreaLightSource.
 struct Light {
-    ShaderRef shader; ///< the light shader call
-    std::string handle;
+    ShaderRef shader;   ///< the light shader call
+    std::string handle; ///< of the request, for Illuminate; may be ""
     /// AreaLightSource: its geometry is the primitives with attributes->areaLight == this light's index.
     bool area = false;
     AttributesRef attributes; ///< at the request (light samples, strategy, visibility)

@@ -12,8 +12,8 @@ namespace alpenglow::scene {
 
 /// A box in object space that grows: xmin xmax ymin ymax zmin zmax, as in RiBound.
 struct ObjectBox {
-    std::array<float, 6> b{INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY, -INFINITY};
-    bool any = false; ///< whether a point has been added
+    std::array<float, 6> b{INFINITY, -INFINITY, INFINITY, -INFINITY, INFINITY, -INFINITY}; ///< empty at first
+    bool any = false;                                                                      ///< whether a point has been added
     /// Adds a point; ignores one that is not finite.
     void add(float x, float y, float z) {
         const float p[3] = {x, y, z};

@@ -10,7 +10,7 @@ enum class SolidOperation { Part, Union, Intersection, Difference };
 /// One SolidBegin around a primitive. id: its number in the scene; child: which of the block around it, from 0.
 struct SolidStep {
     uint32_t id = 0;
-    SolidOperation operation = SolidOperation::Part;
+    SolidOperation operation = SolidOperation::Part; ///< of the block
     int child = 0;
     bool operator==(const SolidStep&) const = default;
 };

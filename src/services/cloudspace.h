@@ -34,6 +34,7 @@ inline Vec3 normalTo(const Matrix& m, const Vec3& n) { return unitOr0(Vec3(trans
 /// `straight`: to a space with the angles of "current", if the file's differ (pointcloud/shear.h).
 class CloudSpace {
 public:
+    /// row: of the argument that names the space, or -1.
     CloudSpace(Services& answers, const ServiceCall& call, const std::string& name, int row, bool straight = false)
         : services_(answers), call_(call), name_(name), row_(row), same_(row < 0 && name != "object" && name != "shader"),
           straight_(straight) {}
@@ -51,6 +52,7 @@ public:
     float growth() const { return growth_; } ///< of lengths
     /// Scale factor of an area with unit normal `n`. Not for straight ones.
     float areaGrowth(const Vec3& n) const { return shear_ && dot(n, n) > 0 ? pointcloud::areaGrowth(to_, n) : growth_ * growth_; }
+    /// Nothing: the space has the angles of "current".
     const std::optional<pointcloud::Shear>& shear() const { return shear_; }
     /// The inverse of the last at().
     const Matrix& back() {

@@ -55,7 +55,7 @@ void Services::sumAmbient(const ServiceCall& call) {
             laneOf.push_back(lane);
         });
         std::vector<LightValue> v(q.size());
-        tracer_->evaluateLight(l, q, v, {});
+        lightEvaluator_->evaluateLight(l, q, v, {});
         for (size_t i = 0; i < q.size(); ++i)
             for (int k = 0; k < 3; ++k) call.out[size_t(k) * size_t(call.lanes) + size_t(laneOf[i])] += v[i].Cl[k];
     }
@@ -65,7 +65,7 @@ void answerOption(Services& answers, const ServiceCall& call) {
     const WorldImpl& world = answers.world();
     call.each([&](int lane, const ShadePoint&) {
         const auto [known, fresh] = answers.memo().options.try_emplace(call.nameId(lane));
-        if (fresh || !world.built()) {
+        if (fresh || answers.building()) {
             const auto i = optionOf(world, rsl::internedString(call.nameId(lane)));
             known->second = i ? std::optional<ShaderValue>(ShaderValue(*i)) : std::nullopt;
         }
@@ -132,7 +132,7 @@ void Services::print(const ServiceCall& call, int lane, const std::string& text)
     const KernelRun& c = call.c;
     const rsl::ir::Site& d = call.d;
     if (call.first + lane >= int(c.points.size())) return;
-    if (c.aside || c.again || (c.binding && c.bound == &c.binding->moveS)) return; // the run that shades reports it
+    if (c.lightOutput || c.again || (c.binding && c.bound == &c.binding->moveS)) return; // the run that shades reports it
     const ShadePoint& p = c.points[size_t(call.first + lane)];
     const shading::PathRay* r = c.rays.empty() ? p.ray : &c.rays[size_t(call.first + lane)];
     rsl::PrintKey key;

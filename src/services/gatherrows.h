@@ -12,7 +12,7 @@ struct GatherRows {
     int width = 1;           ///< floats of a row: GatherSite::width
     std::vector<int> counts; ///< by lane: rays of the complete statement
     std::vector<int> begins; ///< by lane: first ray in rows
-    std::vector<float> rows;
+    std::vector<float> rows; ///< numbers of the rays, row after row
     /// The row of a ray that is in `rows`.
     float* of(int lane, int ray) { return rows.data() + (size_t(lane) * size_t(rsl::kGatherRays) + size_t(ray)) * size_t(width); }
 };

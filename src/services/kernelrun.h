@@ -10,7 +10,7 @@ namespace alpenglow::services {
 /// One batch of points, what shades it, and the state of its services.
 struct KernelRun {
     std::shared_ptr<shading::Batch> batch;
-    const BoundKernel* bound = nullptr;
+    const BoundKernel* bound = nullptr;      ///< the kernel with its bound call sites
     const SurfaceBinding* binding = nullptr; ///< of the first point; the light list is the same for all
     std::vector<ShadePoint> points;
     std::vector<shading::PathRay> rays; ///< of the points; ShadePoint::ray points here
@@ -20,11 +20,11 @@ struct KernelRun {
     const BoundLight* light = nullptr;          ///< whose kernel runs
     const LitSurface* lit = nullptr;            ///< while a light's kernel runs: the lit surface
     const Medium* volume = nullptr;             ///< while a volume's kernel runs
-    const LightOutput* aside = nullptr;         ///< the run computes this output only
+    const LightOutput* lightOutput = nullptr;   ///< the run computes this output only
     bool forShadow = false;                     ///< the kernel returns opacity for shadow rays
     bool again = false;                         ///< a repeated run: prints and bakes nothing
     bool dark = false;                          ///< loops over lights are empty
-    bool below = false;                         ///< exits of subsurface walks: points that gather light, without a kernel
+    bool subsurface = false;                    ///< exits of subsurface walks: points that gather light, without a kernel
     bool between = false;                       ///< points on ray segments inside a medium
     std::shared_ptr<const KernelRun> displaced; ///< run of the displacement shader at these points, if its outputs are queried
     const KernelRun* surface = nullptr;         ///< while an atmosphere's kernel runs: the run of the surface behind it

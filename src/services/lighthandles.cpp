@@ -126,7 +126,7 @@ void Services::lightParameters(const ServiceCall& call, const LightsAsked& asked
     const rsl::ir::Site& d = call.d;
     const bool element = d.argKinds.back() == Kind::Float; // the index is last
     for (auto [li, of] : asked) {
-        const auto tell = [&](const std::string& name, int part, uint64_t points) {
+        const auto answerWith = [&](const std::string& name, int part, uint64_t points) {
             std::optional<ShaderValue> t = partValue(*world_->lights()[size_t(li)].instance, name, part);
             if (!t) return;
             if (t->kind == Kind::Float && !t->elements && d.resultKinds.size() > 1 && d.resultKinds[1] == Kind::Triple) {
@@ -137,7 +137,7 @@ void Services::lightParameters(const ServiceCall& call, const LightsAsked& asked
                 if (points >> lane & 1) call.answer(lane, *t);
         };
         if (!d.strings.empty() && !element) {
-            tell(d.strings.back(), -1, of);
+            answerWith(d.strings.back(), -1, of);
             continue;
         }
         for (int lane = 0; lane < call.lanes; ++lane) { // a name computed at run time follows the handle
@@ -147,7 +147,7 @@ void Services::lightParameters(const ServiceCall& call, const LightsAsked& asked
             int part = -1;
             if (const float at = element ? call.at(int(d.argKinds.size()) - 1, lane) : 0; element)
                 part = at >= 1 ? int(std::min(at, float(limits::kShaderArray))) : 0;
-            tell(name, part, uint64_t(1) << lane);
+            answerWith(name, part, uint64_t(1) << lane);
         }
     }
 }

@@ -23,7 +23,7 @@ struct LightCall {
     const shading::ParameterBlock* parameters = nullptr; ///< replaces the instance's: with values sent by a surface
     const BoundKernel* kernel = nullptr;                 ///< for sent strings; for a LightGroup, its own
     std::span<const BoundLight* const> of; ///< by query: lights of one LightGroup, sorted; empty: all queries are to one light
-    const LitSurface* lit = nullptr;
+    const LitSurface* lit = nullptr;       ///< the lit points; null: unknown
     const std::vector<char>* inMedium = nullptr; ///< by query: a medium, not its atmosphere, is before the emitter
     std::vector<float>* values = nullptr;        ///< receives BoundLight::values: valueWidth numbers for each query
     std::span<const int> more;                   ///< further outputs of `kernel`,
@@ -32,7 +32,7 @@ struct LightCall {
 
 /// Distance of shadow rays to a light sample, and radius of the disk that they end on; 0: a point.
 struct ShadowReach {
-    float distance = 1e38f, radius = 0;
+    float distance = 1e38f, radius = 0; ///< camera space
 };
 
 /// Results of the setup before a loop.
@@ -65,9 +65,9 @@ struct LightLoop : LightIterations {
     struct Kept {
         uint64_t have = 0, lit = 0, ran = 0; ///< ran: for a light with many samples, evaluated even where not lit
         std::vector<float> key;              ///< the seven rows
-        std::vector<uint64_t> hash;
-        std::vector<float> out, values; ///< L, Cl, Ol: nine rows; values by lane
-        std::vector<ShadowReach> reach;
+        std::vector<uint64_t> hash;          ///< of the key, by lane
+        std::vector<float> out, values;      ///< L, Cl, Ol: nine rows; values by lane
+        std::vector<ShadowReach> reach;      ///< by lane
     };
     std::unordered_map<uint64_t, Kept> kept; ///< by keptName()
 
@@ -83,12 +83,12 @@ struct LightLoop : LightIterations {
 
 /// A light sample for all points of a batch: for loops at the surface's P that send no values.
 struct LightSheet {
-    bool made = false, refused = false;
-    int size = 0;                   ///< points
-    std::vector<float> out;         ///< L, Cl, Ol: nine rows of `size`
-    std::vector<ShadowReach> reach; ///< by point: KernelRun::lightReach
-    std::vector<float> values;      ///< by point: BoundLight::values
-    std::vector<char> lit;          ///< by point
+    bool made = false, refused = false; ///< refused: too few points ask for it, so each strip samples for itself
+    int size = 0;                       ///< points
+    std::vector<float> out;             ///< L, Cl, Ol: nine rows of `size`
+    std::vector<ShadowReach> reach;     ///< by point: KernelRun::lightReach
+    std::vector<float> values;          ///< by point: BoundLight::values
+    std::vector<char> lit;              ///< by point
 };
 
 /// Whether each nesting depth of loops has light samples of its own, so that products of outer and inner loops have the right

@@ -52,7 +52,7 @@ void Services::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int 
     call.values = &values;
     if (loop.setup < 0) {
         if (light.asksSurface) lit = litSurface(c, loop, points, first, lanes), call.lit = &lit;
-        tracer_->evaluateLight(light, q, out, call);
+        lightEvaluator_->evaluateLight(light, q, out, call);
         return;
     }
     // Sent values: one run for all points that send equal values. Elements of an array go to an array of the same class.
@@ -98,7 +98,7 @@ void Services::evaluateForLoop(KernelRun& c, const LightLoop& loop, int li, int 
         std::vector<float> resultValues(some.size() * size_t(light.valueWidth));
         call.values = &resultValues;
         if (light.asksSurface) lit = litSurface(c, loop, where, first, lanes), call.lit = &lit;
-        tracer_->evaluateLight(light, some, result, call);
+        lightEvaluator_->evaluateLight(light, some, result, call);
         for (size_t k = 0; k < members.size(); ++k) {
             out[size_t(members[k])] = result[k];
             std::copy_n(resultValues.begin() + long(k) * light.valueWidth, light.valueWidth,
@@ -194,7 +194,6 @@ bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at,
         const Vec3 w = directionOr(axis, directionOr(dot(p.N, p.I) > 0 ? -p.N : p.N, Vec3(0, 0, 1)));
         p.shape = nullptr;
         p.P = at + w;
-        p.N = -w;
     } else if (light.kind == LightKind::Environment) {
         // The sky in directions uniform in the cone of the loop; for a sky with a table, half of them by radiance.
         if (!p.ray) return false;
@@ -214,7 +213,6 @@ bool Services::lightQuery(const KernelRun& c, int li, int point, const Vec3& at,
         else if (!light.sky->sample(u, w, density) || (!all && !(dot(w, middle) > 1 - cap))) return false;
         p.shape = nullptr;
         p.P = at + w;
-        p.N = -w;
         *factor = 2 * cap / float(turns); // 1 / (pi pdf n)
         if (light.sky) *factor = 2 / (float(turns) * (1 / (2 * cap) + float(kPi) * light.sky->pdf(w)));
     } else {
@@ -272,7 +270,7 @@ uint64_t Services::sampleLight(KernelRun& c, const LightLoop& loop, int li, int 
             kept.ran |= uint64_t(v[i].lit) << laneOf[i];
             sentSample(light, turn, values.data() + i * width, v[i]);
         }
-    if (light.shadows) tracer_->shadowLight(c, light, first, drawOf(loop), q, laneOf, v);
+    if (light.shadows) lightEvaluator_->shadowLight(c, light, first, drawOf(loop), q, laneOf, v);
     for (size_t i = 0; i < q.size(); ++i) {
         const size_t lane = size_t(laneOf[i]);
         std::copy_n(values.begin() + long(i) * light.valueWidth, light.valueWidth,

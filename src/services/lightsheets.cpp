@@ -90,8 +90,8 @@ void Services::fillSheet(KernelRun& c, const LightLoop& loop, int li, int turn, 
     LitSurface lit;
     call.values = &values;
     if (light.asksSurface) lit = litSurface(c, loop, of, 0, int(n)), call.lit = &lit;
-    tracer_->evaluateLight(light, q, v, call);
-    if (light.shadows) tracer_->shadowLight(c, light, 0, drawOf(loop), q, of, v);
+    lightEvaluator_->evaluateLight(light, q, v, call);
+    if (light.shadows) lightEvaluator_->shadowLight(c, light, 0, drawOf(loop), q, of, v);
     for (size_t k = 0; k < q.size(); ++k) {
         const size_t i = size_t(of[k]);
         std::copy_n(values.begin() + long(k * width), width, sheet.values.begin() + long(i * width));
@@ -124,7 +124,7 @@ const std::vector<Color>& Services::ambientOf(KernelRun& c) {
             q[i].shape = nullptr;
         }
         v.assign(q.size(), {});
-        tracer_->evaluateLight(l, q, v, {});
+        lightEvaluator_->evaluateLight(l, q, v, {});
         for (size_t i = 0; i < q.size(); ++i) c.ambient[i] += v[i].Cl;
     }
     return c.ambient;

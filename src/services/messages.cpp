@@ -269,7 +269,7 @@ void answerAttribute(Services& answers, const ServiceCall& q) {
     q.each([&](int lane, const ShadePoint& p) {
         const int32_t id = q.nameId(lane);
         const std::string& name = rsl::internedString(id);
-        if (!self && !imager && w.built() && p.shape && samePoints(id)) {
+        if (!self && !imager && !answers.building() && p.shape && samePoints(id)) {
             const SurfaceBinding* b = q.binding(w, lane);
             if (memo.attributes.size() > kMostAttributes) memo.attributes.clear();
             const auto [known, fresh] = memo.attributes.try_emplace({id, turn, &p.shape->attributes(), b});

@@ -7,7 +7,7 @@ namespace alpenglow::services {
 void answerPhotons(Services& answers, const ServiceCall& call) {
     const PhotonSite& s = *call.s.photons;
     const WorldImpl& world = answers.world();
-    if (s.point < 0 || !world.built()) return;
+    if (s.point < 0 || answers.building()) return;
     static const int32_t kRadiance = rsl::internString("radiance");
     const auto triple = [&](int row, int lane) {
         return Vec3(call.at(row, lane), call.at(row + 1, lane), call.at(row + 2, lane));

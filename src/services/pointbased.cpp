@@ -116,7 +116,7 @@ void answerPointHemisphere(Services& answers, const ServiceCall& call) {
 /// By Jensen and Buhler, A Rapid Hierarchical Rendering Technique for Translucent Materials (2002).
 void answerPointSubsurface(Services& answers, const ServiceCall& call) {
     const PointSite& s = *call.s.points;
-    SubsurfaceSite site = s.below;
+    SubsurfaceSite site = s.subsurface;
     if (site.model == SubsurfaceSite::Model::Walk) site.model = SubsurfaceSite::Model::Dipole;
     const bool better = site.model == SubsurfaceSite::Model::BetterDipole;
     std::vector<const pointcloud::PointOctree*> from;

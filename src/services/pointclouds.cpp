@@ -37,7 +37,7 @@ void turnMatrix(const Matrix& m, float* v) {
 /// The ray of a lane's point; for a light, the ray that hit the lit surface. Null: none, or the point is not on a surface.
 const shading::PathRay* rayOfLane(const ServiceCall& call, int lane, const ShadePoint& p) {
     const KernelRun& c = call.c;
-    if (c.aside || c.again || c.forShadow || c.between) return nullptr;
+    if (c.lightOutput || c.again || c.forShadow || c.between) return nullptr;
     if (c.light) return p.lit ? p.ray : nullptr;
     if (c.volume) return c.surface ? p.ray : nullptr;
     return c.rays.empty() || !c.binding ? nullptr : &c.rays[size_t(call.first + lane)];

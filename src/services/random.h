@@ -19,12 +19,16 @@ enum RandomUse : uint32_t {
     kAlbedo,
     kGuideRay,
     kShadowRoulette,
+    kSpecularSearch,
+    kSpecularSeed,
+    kSpecularCone,
     kLightPoint = 1u << 21
 };
 
 /// The random numbers of one camera sample. Each depends on (seed, pixel, sample, vertex, use, occurrence) alone.
 class Random {
 public:
+    /// Of a sample of a pixel, given by its numbers, or by seed, raster position and number of the sample.
     explicit Random(const SampleNumbers& numbers) : numbers_(numbers) {}
     Random(SeedKey seed, int px, int py, uint32_t sample) : numbers_(Sampler(seed, px, py), sample) {}
     /// Two numbers in [0, 1). use: a call site, or one of the constants above; occurrence: earlier requests of the same use at

@@ -10,6 +10,7 @@ namespace alpenglow::services {
 /// 0; then follow the values, by component, then element. For a resizable array its length comes before them.
 class ServiceCall {
 public:
+    /// first, mask: the strip begins at that point of the batch; lanes whose bits are set are active. in, out: rows.
     ServiceCall(KernelRun&, Diagnostics&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     /// Calls body(lane, point) for the lanes of the mask that have a point.
     template <class Body> void each(Body&& body) const {
@@ -38,14 +39,14 @@ public:
     /// Binding of a lane's point; for a light's kernel, of the surface that it lights. Null without a primitive.
     const SurfaceBinding* binding(const WorldImpl&, int lane) const;
 
-    KernelRun& c;
-    Diagnostics& diagnostics;
-    const SiteInfo& s;
-    const rsl::ir::Site& d;
-    const int site, first, lanes;
-    const uint64_t mask;
-    const float* const in;
-    float* const out;
+    KernelRun& c;                 ///< the batch, and its services
+    Diagnostics& diagnostics;     ///< where messages of the call go
+    const SiteInfo& s;            ///< the call site as it was bound
+    const rsl::ir::Site& d;       ///< the call site as it was compiled
+    const int site, first, lanes; ///< index of the site; first point of the strip in the batch; width of rows
+    const uint64_t mask;          ///< active lanes, as bits
+    const float* const in;        ///< argument rows
+    float* const out;             ///< result rows
 };
 
 } // namespace alpenglow::services

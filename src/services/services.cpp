@@ -2,8 +2,9 @@
 
 namespace alpenglow::services {
 
-Services::Services(const WorldImpl& world, Diagnostics& d, Tracer* tracer)
-    : world_(&world), diagnostics_(d), tracer_(tracer), seed_(world.settings().seed), noSample_(Sampler(seed_, 0, 0), 0) {}
+Services::Services(const WorldImpl& world, Diagnostics& d, LightEvaluator* lights, bool building)
+    : world_(&world), diagnostics_(d), lightEvaluator_(lights), building_(building), seed_(world.settings().seed),
+      noSample_(Sampler(seed_, 0, 0), 0) {}
 
 void KernelRun::forget() {
     bound = nullptr;
@@ -13,8 +14,8 @@ void KernelRun::forget() {
     light = nullptr;
     lit = nullptr;
     volume = nullptr;
-    aside = nullptr;
-    below = between = again = dark = forShadow = false;
+    lightOutput = nullptr;
+    subsurface = between = again = dark = forShadow = false;
     displaced.reset();
     for (LightLoop& loop : loops) loop.reset(-1);
     ambient.clear();
@@ -26,10 +27,10 @@ void KernelRun::forget() {
     gathers.clear();
 }
 
-ServiceCall::ServiceCall(KernelRun& context, Diagnostics& said, int number, int firstPoint, uint64_t points, int width,
+ServiceCall::ServiceCall(KernelRun& context, Diagnostics& reported, int number, int firstPoint, uint64_t points, int width,
                          const float* arguments, float* results)
 
-    : c(context), diagnostics(said), s(context.bound->sites[size_t(number)]), d(*s.site), site(number), first(firstPoint),
+    : c(context), diagnostics(reported), s(context.bound->sites[size_t(number)]), d(*s.site), site(number), first(firstPoint),
       lanes(width), mask(points), in(arguments), out(results) {
     for (int r = 0; r < s.resultRowCount; ++r)
         for (int lane = 0; lane < lanes; ++lane)

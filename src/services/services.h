@@ -16,9 +16,9 @@ class Texture;
 namespace alpenglow::services {
 
 /// Interface to light transport for services.
-class Tracer {
+class LightEvaluator {
 public:
-    virtual ~Tracer() = default;
+    virtual ~LightEvaluator() = default;
     /// Light arriving at queries (ShadePoint::Ps) from one light. For area lights P is the point on the emitter.
     virtual void evaluateLight(const BoundLight&, std::vector<ShadePoint>& queries, std::span<LightValue>, const LightCall&) = 0;
     /// Attenuates the values of one light by occlusion between it and the points that it lights: point `first` + laneOf[i] of a
@@ -32,8 +32,8 @@ struct LightParameter {
     std::optional<ShaderValue> value; ///< value set by the scene; nothing: the light has no such parameter
     /// Consecutive components of one value.
     struct Part {
-        int from, components;
-        size_t to;
+        int from, components; ///< index of the first, and their number
+        size_t to;            ///< index in the other value
     };
     std::vector<Part> written; ///< written by its kernel: positions in BoundLight::values, and in the answer
 };
@@ -42,10 +42,11 @@ struct LightParameter {
 struct ServiceMemo {
     std::map<std::pair<int32_t, int>, LightParameter> ofLights;                                ///< by name and light
     std::map<std::pair<int32_t, const ShaderInstance*>, std::optional<ShaderValue>> ofShaders; ///< shaderParameter()
+    /// attribute(), by name, row and point.
     std::map<std::tuple<int32_t, int, const scene::Attributes*, const SurfaceBinding*>, std::optional<ShaderValue>> attributes;
     std::map<std::pair<int32_t, const scene::Attributes*>, std::optional<ShaderValue>> filterLinks; ///< scene::FilterLink::acts()
-    std::unordered_map<const scene::Primitive*, std::optional<ShaderValue>> boxes; ///< kObjectBox of queried primitives
-    std::unordered_map<int32_t, std::optional<ShaderValue>> options;
+    std::unordered_map<const scene::Primitive*, std::optional<ShaderValue>> boxes;    ///< kObjectBox of queried primitives
+    std::unordered_map<int32_t, std::optional<ShaderValue>> options;                  ///< option(), by name
     std::unordered_map<int32_t, bool> pointAttributes;                                ///< ofPoint() of a name
     std::unordered_map<const scene::Attributes*, std::pair<float, float>> shadowBias; ///< Attribute "shadow": bias0, bias1
 };
@@ -53,8 +54,9 @@ struct ServiceMemo {
 /// The services of one thread, with its caches.
 class Services {
 public:
-    /// `tracer`: null if there are no lights.
-    Services(const WorldImpl&, Diagnostics&, Tracer* tracer);
+    /// `lights`: null if there are no lights. building: the world is not complete, so answers that may change are not kept, and
+    /// there are no photon maps yet.
+    Services(const WorldImpl&, Diagnostics&, LightEvaluator* lights, bool building = false);
     /// Answers a call of any kind except requests for light. Rows are those of rsl::ServiceFn.
     void service(KernelRun&, int site, int first, uint64_t mask, int lanes, const float* in, float* out);
     // illuminance loops, as in rsl::KernelCall (lightloop.cpp).
@@ -80,6 +82,8 @@ public:
 
     // Shared by services in other files.
     const WorldImpl& world() const { return *world_; }
+    /// Whether the world is not complete.
+    bool building() const { return building_; }
     /// The cache for answers in other files.
     ServiceMemo& memo() { return memo_; }
     /// The state of the loops of a strip, which begins at this point.
@@ -137,6 +141,7 @@ public:
         if (shearedOctrees_.size() > limits::kShearedOctrees) shearedOctrees_.clear();
     }
     const ptex::Texture* ptexOf(int32_t id, const ServiceCall& call); ///< the same for Ptex files; ptexture.cpp
+    /// Reused from call to call.
     pointcloud::Hemisphere& hemisphere() { return hemisphere_; }
     AlbedoInversions& albedoInversions() { return albedoInversions_; }
 
@@ -219,7 +224,8 @@ private:
 
     const WorldImpl* world_;
     Diagnostics& diagnostics_;
-    Tracer* tracer_;
+    LightEvaluator* lightEvaluator_;
+    const bool building_;
     SeedKey seed_;
     SampleNumbers noSample_; ///< for points without a camera sample
     ServiceMemo memo_;

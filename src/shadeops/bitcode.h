@@ -7,9 +7,10 @@
 
 namespace alpenglow::shadeops {
 
+/// LLVM bitcode of the runtime, compiled into the program.
 struct Bitcode {
-    const unsigned char* data;
-    size_t size;
+    const unsigned char* data; ///< not null
+    size_t size;               ///< bytes
 };
 
 /// Bitcode of all Runtime symbols at 4, 8, 16, 32 or 64 lanes (typedef float vf __attribute__((ext_vector_type(lanes))));

@@ -12,8 +12,9 @@
 
 namespace alpenglow::shadeops::AL_NAMESPACE {
 
+/// Three numbers for each lane: a colour, point, vector or normal.
 template <class T> struct Triple {
-    T x, y, z;
+    T x, y, z; ///< by lane
 };
 /// Row by row: m[4 * row + column].
 template <class T> struct Matrix {
@@ -21,9 +22,10 @@ template <class T> struct Matrix {
 };
 /// Two results.
 template <class T> struct Pair {
-    T a, b;
+    T a, b; ///< by lane
 };
 
+/// Component by component.
 template <class T> AL_INLINE Triple<T> operator+(const Triple<T>& a, const Triple<T>& b) {
     return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
@@ -36,6 +38,7 @@ template <class T> AL_INLINE Triple<T> times(const Triple<T>& a, const T& k) { r
 template <class T> AL_INLINE Triple<T> mad3(const Triple<T>& a, const T& k, const Triple<T>& b) {
     return {mad(a.x, k, b.x), mad(a.y, k, b.y), mad(a.z, k, b.z)};
 }
+/// Products, a choice by lane (a where m is set), and the length, as of vectors.
 template <class T> AL_INLINE T dot(const Triple<T>& a, const Triple<T>& b) { return mad(a.x, b.x, mad(a.y, b.y, a.z * b.z)); }
 template <class T> AL_INLINE Triple<T> cross(const Triple<T>& a, const Triple<T>& b) {
     return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
@@ -47,6 +50,7 @@ template <class T> AL_INLINE T length(const Triple<T>& a) { return root(dot(a, a
 /// The zero vector for the zero vector.
 template <class T> AL_INLINE Triple<T> normalize(const Triple<T>& a) { return times(a, divide(T(vf(1)), length(a))); }
 
+/// Reads the next value from the flattened arguments of a call and moves p behind it.
 AL_INLINE void load(const vf*& p, vf& x) { x = *p++; }
 AL_INLINE void load(const vf*& p, Jet1& x) {
     x = Jet1{p[0], p[1], p[2]};
@@ -65,6 +69,7 @@ template <class T> AL_INLINE void load(const vf*& p, Matrix<T>& t) {
 #pragma clang loop unroll(full)
     for (int i = 0; i < 16; ++i) load(p, t.m[i]);
 }
+/// Writes a value to the flattened results of a call and moves p behind it.
 AL_INLINE void store(vf*& p, vf x) { *p++ = x; }
 AL_INLINE void store(vf*& p, const Jet1& x) {
     p[0] = x.v, p[1] = x.du, p[2] = x.dv;
@@ -93,6 +98,7 @@ template <class A> AL_INLINE void storeOutput(vf*& p, const std::remove_cvref_t<
     if constexpr (std::is_lvalue_reference_v<A> && !std::is_const_v<std::remove_reference_t<A>>) store(p, x);
 }
 
+/// Calls f with arguments from `in`; its result and then its outputs go to `out`.
 template <class R, class... A, std::size_t... I>
 AL_INLINE void callWith(R (*f)(A...), const vf* in, vf* out, std::index_sequence<I...>) {
     std::tuple<std::remove_cvref_t<A>...> arguments;
@@ -114,6 +120,7 @@ template <class R, class... A> AL_INLINE void call(R (*f)(A...), const vf* in, v
     extern "C" __attribute__((always_inline)) void symbol##_2(const vf* in, vf* out) { call(&function<Jet2>, in, out); }
 #else
 
+/// Floats a lane of a type, and of the arguments and results of a function, at order 0.
 template <class A> constexpr int componentsOf() {
     if constexpr (std::is_void_v<A>) return 0;
     else return static_cast<int>(sizeof(std::remove_cvref_t<A>) / sizeof(vf));
@@ -123,6 +130,7 @@ template <class R, class... A> constexpr int outputsOf(R (*)(A...)) {
     return componentsOf<R>() +
            ((std::is_lvalue_reference_v<A> && !std::is_const_v<std::remove_reference_t<A>> ? componentsOf<A>() : 0) + ... + 0);
 }
+/// call() with the signature of all runtime functions.
 template <auto F> void wrapped(const vf* in, vf* out) { call(F, in, out); }
 
 // Who includes this wants the functions on vf alone (1), or those on Jet1 and Jet2 as well (3).
@@ -143,12 +151,13 @@ struct RuntimeEntry {
 };
 
 template <int I> struct EntryAt;
-inline constexpr int kFirstEntry = __COUNTER__ + 1;
+inline constexpr int kFirstEntry = __COUNTER__ + 1; ///< value of __COUNTER__ at the first AL_RUNTIME
 #define AL_RUNTIME(name, function)                                                                                               \
     template <> struct EntryAt<__COUNTER__ - kFirstEntry> {                                                                      \
         static constexpr RuntimeEntry kEntry = {                                                                                 \
             #name, {AL_ORDERS(function)}, inputsOf(&function<vf>), outputsOf(&function<vf>)};                                    \
     };
+/// All entries, in the order of the source.
 template <size_t... I> constexpr auto collectEntries(std::index_sequence<I...>) {
     return std::array<RuntimeEntry, sizeof...(I)>{EntryAt<static_cast<int>(I)>::kEntry...};
 }

@@ -14,6 +14,7 @@ template <class T> AL_INLINE void opSetcomp(Triple<T>& c, const T& i, const T& v
     c.y = select(at == 1, v, c.y);
     c.z = select(at == 2, v, c.z);
 }
+/// The sum a x + b y + d z.
 template <class T> AL_INLINE T weighted(const Triple<T>& c, float a, float b, float d) {
     return mad(T(c.x), vf(a), vf(0)) + (c.y * vf(b) + c.z * vf(d));
 }

@@ -11,9 +11,10 @@ namespace alpenglow::shadeops {
 inline constexpr Type kF{Base::Float, 0}, kS{Base::String, 0}, kC{Base::Color, 0}, kP{Base::Point, 0}, kV{Base::Vector, 0},
     kFs{Base::Float, -1}, kCs{Base::Color, -1};
 
+/// A signature as it is written in lists.
 struct SignatureText {
-    const char* text;
-    const char* symbol = "";
+    const char* text;        ///< "float noise(point p)"
+    const char* symbol = ""; ///< Signature::symbol
 };
 
 /// Parses each text.
@@ -23,9 +24,11 @@ std::vector<Signature> sigs(std::initializer_list<SignatureText> texts);
 /// symbol `symbol` + "_f", tuples `symbol` + "_t"; an empty symbol stays empty.
 std::vector<Signature> each(const std::string& types, const std::string& pattern, const std::string& symbol = {});
 
+/// Both lists, a first.
 std::vector<Signature> operator+(std::vector<Signature> a, const std::vector<Signature>& b);
 std::vector<OptionalParameter> operator+(std::vector<OptionalParameter> a, const std::vector<OptionalParameter>& b);
 
+/// Types for each().
 inline constexpr const char* kTuples = "color point vector normal";
 inline constexpr const char* kFloatAndTuples = "float color point vector normal";
 inline constexpr const char* kAllTypes = "float color point vector normal matrix string";
@@ -33,6 +36,7 @@ inline constexpr const char* kAllTypes = "float color point vector normal matrix
 /// Parameters of the distributions of trace() and bsdf() (3Delight manual, 6.4.5.2).
 std::vector<OptionalParameter> distributionParameters();
 
+/// The shadeops of one section; shadeops() joins them.
 std::vector<Shadeop> mathematicsShadeops();
 std::vector<Shadeop> noiseShadeops();
 std::vector<Shadeop> geometryShadeops();

@@ -28,21 +28,24 @@ enum class DerivativeRule : uint8_t {
     Inherent  ///< the lowering makes the derivative itself (Rsl and Special)
 };
 
+/// What is known of the expected value of a result that is sampled: right at every number of samples, right in the limit, or
+/// wrong for the reason in Shadeop::biasReason.
 enum class Bias : uint8_t { Unbiased, Consistent, Biased };
 
+/// A parameter of a signature.
 struct Parameter {
-    Type type;
-    std::string name;
+    Type type;            ///< also the types that convert to it are accepted
+    std::string name;     ///< for manuals and messages
     bool output = false;  ///< by reference
     bool uniform = false; ///< must be uniform
 };
 
 /// One way to call a shadeop: "float noise(point p; float w)".
 struct Signature {
-    Type result;
-    std::vector<Parameter> parameters;
-    bool repeats = false; ///< the last parameter may be given any number of times ("...")
-    bool pairs = false;   ///< token/value pairs may follow ("; ..." pairs)
+    Type result;                       ///< Void: a statement
+    std::vector<Parameter> parameters; ///< in their order; strings included
+    bool repeats = false;              ///< the last parameter may be given any number of times ("...")
+    bool pairs = false;                ///< token/value pairs may follow ("; ..." pairs)
     /// Runtime: base name of the bitcode functions. `symbol` + "_0", "_1", "_2" are the instantiations on plain lanes, Jet1,
     /// Jet2:
     ///   extern "C" void sym_k(const vf* in, vf* out)
@@ -55,24 +58,26 @@ struct Signature {
     std::string text; ///< as written
 };
 
+/// A parameter given by a token and a value behind the others.
 struct OptionalParameter {
-    Type type;
-    std::string name;
-    bool output = false;
-    std::string defaultText, doc;
+    Type type;                    ///< of the value
+    std::string name;             ///< the token
+    bool output = false;          ///< the value is a variable that the call sets
+    std::string defaultText, doc; ///< text of the default; text of the manual
 };
 
 /// "radians(180)" gives "3.141593" under `alpenglow eval`, after the statements of `setup`; or, where `when` says so, in such a
 /// scene.
 struct Example {
-    std::string expression, value, setup = {}, when = {};
+    std::string expression, value, setup = {}, when = {}; ///< RSL; printed result; statements; condition on the scene, in words
 };
 
 /// What a shadeop filters over beyond its coordinates: where these go from sample to sample. The compiler adds the differences to
 /// the call.
 struct Footprint {
+    /// What the coordinates are.
     enum class Of : uint8_t {
-        Nothing,
+        Nothing, ///< it does not filter
         Surface, ///< two floats, by default s and t; another form takes four corners of them
         Space    ///< a point or direction
     } of = Of::Nothing;
@@ -82,22 +87,23 @@ struct Footprint {
     bool marks = false;   ///< Surface: a call without coordinates gets a further argument, 1
 };
 
+/// A function of the shading language.
 struct Shadeop {
-    std::string name;
-    std::vector<Signature> signatures;
-    uint32_t contexts = kAnyContext;
-    Lowering lowering = Lowering::Runtime;
-    DerivativeRule derivative = DerivativeRule::Jet;
-    bool pure = true;       ///< same arguments, same result, no effect: may be folded, merged, removed
-    bool outOfLine = false; ///< large (noise): called, not inlined
-    int widest = 64;        ///< the most lanes whose runtime has it: large ones take 30 s to compile at 32 lanes
-    Bias bias = Bias::Unbiased;
-    std::string biasReason;
-    std::string section; ///< "Mathematics", "Noise", ... as in the 3Delight manual, 6.4
-    std::string doc;     ///< semantics and edge cases
-    std::string source;  ///< what people can look up: a section, a paper; what is our own
-    std::vector<Example> examples;
-    std::vector<OptionalParameter> optional;
+    std::string name;                                ///< as in shaders
+    std::vector<Signature> signatures;               ///< in the order in which they are tried
+    uint32_t contexts = kAnyContext;                 ///< kinds of shaders that may call it
+    Lowering lowering = Lowering::Runtime;           ///< how the compiler translates a call
+    DerivativeRule derivative = DerivativeRule::Jet; ///< how a result gets its derivatives
+    bool pure = true;                                ///< same arguments, same result, no effect: may be folded, merged, removed
+    bool outOfLine = false;                          ///< large (noise): called, not inlined
+    int widest = 64;                         ///< the most lanes whose runtime has it: large ones take 30 s to compile at 32 lanes
+    Bias bias = Bias::Unbiased;              ///< of its result
+    std::string biasReason;                  ///< for the manual; "": unbiased
+    std::string section;                     ///< "Mathematics", "Noise", ... as in the 3Delight manual, 6.4
+    std::string doc;                         ///< semantics and edge cases
+    std::string source;                      ///< what people can look up: a section, a paper; what is our own
+    std::vector<Example> examples;           ///< for the manual; tests run them
+    std::vector<OptionalParameter> optional; ///< parameters that are named by tokens
     std::vector<Base>
         lastResort;      ///< results that are chosen only if no other converts to the wanted type: the distance of trace()
     Footprint footprint; ///< Lowering::Service
@@ -106,6 +112,7 @@ struct Shadeop {
 
 /// All shadeops, sorted by name. Built once, immutable.
 std::span<const Shadeop> allShadeops();
+/// Null: there is none of that name.
 const Shadeop* findShadeop(std::string_view name);
 
 /// Parses "float noise(point p; float w)", "type min(type x, y, ...)" is not accepted here: list generics one by one.

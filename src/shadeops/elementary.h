@@ -6,13 +6,14 @@
 
 namespace alpenglow::shadeops::AL_NAMESPACE {
 
-inline constexpr float kMagic = 0x1.8p23f; ///< x + kMagic rounds x to an integer, which is then in the low bits
-inline constexpr float kInfinity = __builtin_inff();
+inline constexpr float kMagic = 0x1.8p23f;           ///< x + kMagic rounds x to an integer, which is then in the low bits
+inline constexpr float kInfinity = __builtin_inff(); ///< positive
 inline constexpr float kPi = 0x1.921fb6p+1f, kPiLo = -0x1.777a5cp-24f, kPiLoLo = -0x1.ee59dap-49f; ///< sum: PI to 70 bits
-inline constexpr float kLn2 = 0x1.62e430p-1f, kLn2Lo = -0x1.05c610p-29f;
-inline constexpr float kLog2e = 0x1.715476p+0f, kLog2eLo = 0x1.4ae0c0p-26f;
+inline constexpr float kLn2 = 0x1.62e430p-1f, kLn2Lo = -0x1.05c610p-29f;                           ///< sum: ln 2
+inline constexpr float kLog2e = 0x1.715476p+0f, kLog2eLo = 0x1.4ae0c0p-26f;                        ///< sum: 1 / ln 2
 inline constexpr float kSmallest = 0x1p-126f; ///< below it numbers count as 0 in logarithms
 
+/// Coefficients of the polynomials below, from the first term that is not exact. Error bounds: tests/shadeops.
 inline constexpr float kSin[] = {-0x1.55554cp-3f, 0x1.110ed6p-7f, -0x1.9f6fbap-13f, 0x1.5db2dep-19f};
 inline constexpr float kTan[] = {0x1.5554dep-2f, 0x1.112deap-3f, 0x1.b5851ep-5f, 0x1.9072a0p-6f, 0x1.96847ap-9f, 0x1.33e7c6p-7f};
 inline constexpr float kAsin[] = {0x1.5555c8p-3f, 0x1.3301fcp-4f, 0x1.747d06p-5f, 0x1.8c2d82p-6f, 0x1.596d66p-5f};
@@ -104,6 +105,7 @@ AL_INLINE vf atan2Lanes(vf y, vf x) {
     return copySign(p, y);
 }
 
+/// -PI/2..PI/2.
 AL_INLINE vf atanLanes(vf x) { return atan2Lanes(x, vf(1)); }
 
 /// p * 2^k for the whole number k = t - kMagic; 0 for k <= -126, infinity overflow for k > 128.

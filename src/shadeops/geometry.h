@@ -18,6 +18,7 @@ template <class T> AL_INLINE vf midRange(const Triple<T>& v) {
 }
 /// What undoes midRange().
 AL_INLINE vf fromMidRange(vf k) { return select(k > 1, vf(0x1p-100f), select(k < 1, vf(0x1p70f), vf(1))); }
+/// V times k.
 template <class T> AL_INLINE Triple<T> scaled(const Triple<T>& v, vf k) { return {v.x * k, v.y * k, v.z * k}; }
 template <class T> AL_INLINE T opLength(const Triple<T>& v) {
     const vf k = midRange(v);

@@ -6,6 +6,8 @@
 
 namespace alpenglow::shadeops::AL_NAMESPACE {
 
+/// A value with its slopes, over two coordinates and over three: the slopes times the coordinates' derivatives. Triples component
+/// by component.
 template <class T> AL_INLINE T opChain2(const T& v, const T& byS, const T& byT, const T& s, const T& t) {
     return withValue(s * value(byS) + t * value(byT), value(v));
 }
@@ -36,6 +38,7 @@ AL_INLINE Triple<T> opCurve2Triple(const Triple<T>& v, const Triple<T>& a, const
             opCurve2(v.z, a.z, b.z, aa.z, ab.z, bb.z, s, t)};
 }
 
+/// The same over three coordinates.
 template <class T>
 AL_INLINE T opCurve3(const T& v, const T& a, const T& b, const T& c, const T& aa, const T& ab, const T& ac, const T& bb,
                      const T& bc, const T& cc, const Triple<T>& d) {

@@ -7,7 +7,7 @@ namespace alpenglow::shadeops {
 
 /// Floats that a symbol takes and gives at order 0; {0, 0} when it is unknown.
 struct RuntimeShape {
-    int in = 0, out = 0;
+    int in = 0, out = 0; ///< floats
 };
 RuntimeShape runtimeShape(std::string_view symbol);
 

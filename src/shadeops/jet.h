@@ -5,20 +5,27 @@
 
 namespace alpenglow::shadeops::AL_NAMESPACE {
 
+/// A value with its first derivatives by u and v, for each lane.
 struct Jet1 {
-    vf v, du, dv;
+    vf v, du, dv; ///< value and derivatives
     Jet1() = default;
+    /// A constant.
     AL_MEMBER Jet1(vf x) : v(x), du(vf(0)), dv(vf(0)) {}
+    /// Value; derivatives by u and v.
     AL_MEMBER Jet1(vf x, vf a, vf b) : v(x), du(a), dv(b) {}
 };
 
+/// A value with its first and second derivatives by u and v, for each lane.
 struct Jet2 {
-    vf v, du, dv, duu, duv, dvv;
+    vf v, du, dv, duu, duv, dvv; ///< value and derivatives
     Jet2() = default;
+    /// A constant.
     AL_MEMBER Jet2(vf x) : v(x), du(vf(0)), dv(vf(0)), duu(vf(0)), duv(vf(0)), dvv(vf(0)) {}
+    /// Value; first derivatives; second derivatives uu, uv, vv.
     AL_MEMBER Jet2(vf x, vf a, vf b, vf aa, vf ab, vf bb) : v(x), du(a), dv(b), duu(aa), duv(ab), dvv(bb) {}
 };
 
+/// The value alone.
 AL_INLINE vf value(vf x) { return x; }
 AL_INLINE vf value(const Jet1& x) { return x.v; }
 AL_INLINE vf value(const Jet2& x) { return x.v; }
@@ -38,7 +45,7 @@ AL_INLINE Jet2 chain(const Jet2& x, vf f, vf d, vf dd) {
 
 /// f(x, y), given its partial derivatives.
 struct Partials {
-    vf x, y, xx, xy, yy;
+    vf x, y, xx, xy, yy; ///< at (x, y)
 };
 AL_INLINE vf chain2(vf, vf, vf f, const Partials&) { return f; }
 AL_INLINE Jet1 chain2(const Jet1& x, const Jet1& y, vf f, const Partials& p) {
@@ -56,6 +63,7 @@ AL_INLINE Jet2 chain2(const Jet2& x, const Jet2& y, vf f, const Partials& p) {
             second(x.dv, x.dv, x.dvv, y.dv, y.dv, y.dvv)};
 }
 
+/// By lane: a where m is set, else b, with derivatives.
 AL_INLINE Jet1 select(vm m, const Jet1& a, const Jet1& b) {
     return {select(m, a.v, b.v), select(m, a.du, b.du), select(m, a.dv, b.dv)};
 }
@@ -63,12 +71,14 @@ AL_INLINE Jet2 select(vm m, const Jet2& a, const Jet2& b) {
     return {select(m, a.v, b.v),     select(m, a.du, b.du),   select(m, a.dv, b.dv),
             select(m, a.duu, b.duu), select(m, a.duv, b.duv), select(m, a.dvv, b.dvv)};
 }
+/// Changes the sign where the highest bit of `bits` is set, with derivatives.
 AL_INLINE Jet1 flipSign(const Jet1& x, vu bits) { return {flipSign(x.v, bits), flipSign(x.du, bits), flipSign(x.dv, bits)}; }
 AL_INLINE Jet2 flipSign(const Jet2& x, vu bits) {
     return {flipSign(x.v, bits),   flipSign(x.du, bits),  flipSign(x.dv, bits),
             flipSign(x.duu, bits), flipSign(x.duv, bits), flipSign(x.dvv, bits)};
 }
 
+/// Sums and differences, with derivatives; a plain vf is a constant.
 AL_INLINE Jet1 operator-(const Jet1& a) { return {-a.v, -a.du, -a.dv}; }
 AL_INLINE Jet2 operator-(const Jet2& a) { return {-a.v, -a.du, -a.dv, -a.duu, -a.duv, -a.dvv}; }
 AL_INLINE Jet1 operator+(const Jet1& a, const Jet1& b) { return {a.v + b.v, a.du + b.du, a.dv + b.dv}; }
@@ -136,6 +146,7 @@ AL_INLINE Jet2 divide(const Jet2& a, const Jet2& b) {
 
 // Elementary functions with their derivatives. Where a derivative is infinite it is taken as 0.
 
+/// Sine, cosine and tangent of radians, with derivatives.
 template <class T> AL_INLINE T sine(const T& x) {
     const vf s = sinLanes(value(x)), c = cosLanes(value(x));
     return chain(x, s, c, -s);
@@ -203,8 +214,10 @@ template <class T> AL_INLINE T power(const T& x, const T& y) {
     return chain2(x, y, f, Partials{fx, f * ln, fxx, fxy, f * ln * ln});
 }
 
+/// The smaller and the larger of two, with the derivatives of that one; b if they are equal or one is NaN.
 template <class T> AL_INLINE T smaller(const T& a, const T& b) { return select(value(a) < value(b), a, b); }
 template <class T> AL_INLINE T larger(const T& a, const T& b) { return select(value(a) > value(b), a, b); }
+/// The absolute value, with derivatives; at 0 those of a.
 template <class T> AL_INLINE T absolute(const T& a) { return select(value(a) < 0, -a, withValue(a, absLanes(value(a)))); }
 template <> AL_MEMBER vf absolute<vf>(const vf& a) { return absLanes(a); }
 

@@ -20,27 +20,33 @@
 
 namespace alpenglow::shadeops::AL_NAMESPACE {
 
+/// One float, integer, unsigned integer for each lane.
 typedef float vf __attribute__((ext_vector_type(ALPENGLOW_LANES)));
 typedef int vi __attribute__((ext_vector_type(ALPENGLOW_LANES)));
 typedef unsigned vu __attribute__((ext_vector_type(ALPENGLOW_LANES)));
 typedef vi vm; ///< mask: -1 or 0
 
+/// The same bits as another type.
 AL_INLINE vu bitsOf(vf x) { return __builtin_bit_cast(vu, x); }
 AL_INLINE vf fromBits(vu x) { return __builtin_bit_cast(vf, x); }
+/// By lane: a where m is set, else b.
 AL_INLINE vf select(vm m, vf a, vf b) { return m ? a : b; }
 AL_INLINE vu select(vm m, vu a, vu b) { return m ? a : b; }
 
 /// a * b + c, rounded once.
 #if defined(ALPENGLOW_BITCODE) || defined(__FMA__)
+/// A b + c, rounded once.
 AL_INLINE vf mad(vf a, vf b, vf c) { return __builtin_elementwise_fma(a, b, c); }
 #else
 // The program itself is built for machines without the instruction: a call keeps the code small there.
 static __attribute__((noinline, unused)) vf mad(vf a, vf b, vf c) { return __builtin_elementwise_fma(a, b, c); }
 #endif
 
+/// Rounds down, up, toward zero.
 AL_INLINE vf floorLanes(vf x) { return __builtin_elementwise_floor(x); }
 AL_INLINE vf ceilLanes(vf x) { return __builtin_elementwise_ceil(x); }
 AL_INLINE vf truncLanes(vf x) { return __builtin_elementwise_trunc(x); }
+/// The absolute value, also of NaN.
 AL_INLINE vf absLanes(vf x) { return fromBits(bitsOf(x) & 0x7fffffffu); }
 /// b where a is not a number: compare and select, one instruction on x86.
 AL_INLINE vf minLanes(vf a, vf b) { return a < b ? a : b; }

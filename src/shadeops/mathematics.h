@@ -69,12 +69,14 @@ template <class T> AL_INLINE Triple<T> opMixFloat(const Triple<T>& x, const Trip
 // Filtered steps: 1/2 + sign(d) G(|d|), d = (middle - edge) / width, G the integral of the kernel from 0, clamped to [0,1].
 // Supports in widths: box 1, triangle 2, gaussian 2 (exp(-2 d^2)), catmull-rom 4.
 
+/// Integral of a filter kernel from its centre to d >= 0 within its support, in widths.
 template <class T> AL_INLINE T boxIntegral(const T& d) { return d; }
 template <class T> AL_INLINE T triangleIntegral(const T& d) { return d - d * d * vf(0.5f); }
 /// Taylor series of the integral of exp(-2 d^2), terms (-2)^n d^(2n+1) / (n! (2n+1)), over twice its value at 1.
 struct GaussianSeries {
-    static constexpr int kTerms = 16;
-    float c[kTerms] = {};
+    static constexpr int kTerms = 16; ///< of the series
+    float c[kTerms] = {};             ///< coefficients of the odd powers of d
+    /// Computed by the compiler.
     constexpr GaussianSeries() {
         constexpr double kWhole = 0.59814400666130410; // integral of exp(-2 x^2) over [0, 1]
         double power = 1;

@@ -41,7 +41,7 @@ template <class T> AL_INLINE Matrix<T> opRotateMatrix(const Matrix<T>& a, const 
 
 /// The 2x2 minors of the upper two and the lower two rows: everything about a 4x4 matrix follows from these twelve.
 template <class T> struct Minors {
-    T s[6], c[6];
+    T s[6], c[6]; ///< of the upper rows; of the lower rows
 };
 template <class T> AL_INLINE Minors<T> minorsOf(const Matrix<T>& a) {
     const T* m = a.m;

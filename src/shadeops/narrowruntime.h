@@ -7,6 +7,7 @@
 
 namespace alpenglow::shadeops {
 
+/// The file of one lane width.
 struct NarrowRuntime {
     std::vector<uint8_t> bytes; ///< bitcode; empty when `lack` says why
     std::string lack;           ///< what is missing and what to do; "" when nothing is

@@ -14,14 +14,15 @@ inline constexpr float kFarAway = 0x1p30f;
 /// Largest |sum| of the interpolated gradients in 1 to 4 dimensions: suprema over the cell, rounded up.
 inline constexpr float kNoiseBound[5] = {0, 0.5f, 0.71527f, 1.03632f, 1.5400f};
 
+/// C independent noise values.
 template <class T, int C> struct Channels {
-    T c[C];
+    T c[C]; ///< one for each channel
 };
 
 /// One evaluation in N dimensions with C channels, depth first over the corners so that few values are alive at a time.
 template <class T, int N, int C> struct NoiseCell {
     T low[N], high[N], fade[N]; // distances to the two lattice planes, and the weight of the high one
-    vu hash[N][2];
+    vu hash[N][2];              ///< of the two lattice planes, by dimension
 
     /// Gradients: one dimension: slopes of random size; two: eight directions; three and four: to the middles of edges of the
     /// cube (one component 0, the others +-1).
@@ -43,6 +44,7 @@ template <class T, int N, int C> struct NoiseCell {
         }
     }
 
+    /// The sum over the corners of the dimensions from D on; d: distances, h: hash so far.
     template <int D> AL_MEMBER Channels<T, C> sum(T* d, vu h) const {
         Channels<T, C> r;
         if constexpr (D < 0) {
@@ -78,6 +80,7 @@ AL_INLINE vf wrapWhole(vf n, vf p) {
 }
 AL_INLINE vf clampFar(vf x) { return minLanes(maxLanes(x, vf(-kFarAway)), vf(kFarAway)); }
 
+/// Noise at p; Periodic: with these periods, integers >= 1.
 template <int N, int C, bool Periodic, class T> AL_INLINE Channels<T, C> noiseSum(const T* p, const T* period) {
     NoiseCell<T, N, C> cell;
 #pragma clang loop unroll(full)

@@ -16,6 +16,7 @@
 #endif
 #ifndef ALPENGLOW_BITCODE
 namespace alpenglow::shadeops::AL_NAMESPACE {
+/// All runtime functions of the included headers.
 inline constexpr int kEntryCount = __COUNTER__ - kFirstEntry;
 inline constexpr auto kEntries = collectEntries(std::make_index_sequence<kEntryCount>{});
 } // namespace alpenglow::shadeops::AL_NAMESPACE

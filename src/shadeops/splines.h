@@ -18,35 +18,44 @@ template <class T> struct Cubic {
 };
 template <class T> AL_INLINE T evaluate(const Cubic<T>& k, const T& t) { return mad(mad(mad(k.d, t, k.c), t, k.b), t, k.a); }
 
+/// The cubic between q and r of four control points.
 struct CatmullRom {
+    /// Control points in their order.
     template <class T> static AL_MEMBER Cubic<T> of(const T& p, const T& q, const T& r, const T& s) {
         return {q, (r - p) * vf(0.5f), p + r * vf(2) - q * vf(2.5f) - s * vf(0.5f), (s - p) * vf(0.5f) + (q - r) * vf(1.5f)};
     }
 };
+/// The cubic of four control points.
 struct BSpline {
+    /// Control points in their order.
     template <class T> static AL_MEMBER Cubic<T> of(const T& p, const T& q, const T& r, const T& s) {
         return {(p + q * vf(4) + r) * vf(1.0f / 6), (r - p) * vf(0.5f), (p + r) * vf(0.5f) - q,
                 ((s - p) + (q - r) * vf(3)) * vf(1.0f / 6)};
     }
 };
+/// The cubic from p to s.
 struct Bezier {
+    /// Control points in their order.
     template <class T> static AL_MEMBER Cubic<T> of(const T& p, const T& q, const T& r, const T& s) {
         return {p, (q - p) * vf(3), (p + r) * vf(3) - q * vf(6), (s - p) + (q - r) * vf(3)};
     }
 };
 /// Point, tangent, point, tangent.
 struct Hermite {
+    /// P and r are points, q and s tangents.
     template <class T> static AL_MEMBER Cubic<T> of(const T& p, const T& q, const T& r, const T& s) {
         return {p, q, (r - p) * vf(3) - q * vf(2) - s, (p - r) * vf(2) + q + s};
     }
 };
 /// Between the second and the third point.
 struct Linear {
+    /// Q + t (r - q).
     template <class T> static AL_MEMBER Cubic<T> of(const T&, const T& q, const T& r, const T&) {
         return {q, r - q, T(vf(0)), T(vf(0))};
     }
 };
 
+/// The point of a segment at t, 0 to 1.
 template <class Basis, class T> AL_INLINE T spline1(const T& t, const T& p, const T& q, const T& r, const T& s) {
     return evaluate(Basis::of(p, q, r, s), t);
 }

@@ -10,13 +10,16 @@ enum class Base : uint8_t { Void, Bool, Float, Color, Point, Vector, Normal, Mat
 
 /// Base type and array length. Bool is internal: the result of comparisons, never a variable.
 struct Type {
-    Base base = Base::Void;
+    Base base = Base::Void; ///< element type
     int array = 0;          ///< 0: not an array; > 0: fixed length; -1: open length, `float x[]`
     int16_t structure = -1; ///< Struct: its number in the program that declares it; else -1
     friend bool operator==(const Type&, const Type&) = default;
+    /// Whether it is a color, point, vector or normal; the same without color; or a number of any kind. False for arrays, except
+    /// isNumeric().
     bool isTuple() const { return array == 0 && base >= Base::Color && base <= Base::Normal; }
     bool isPointLike() const { return array == 0 && base >= Base::Point && base <= Base::Normal; }
     bool isNumeric() const { return base >= Base::Float && base <= Base::Matrix; }
+    /// The type without its array length.
     Type element() const { return {base, 0, structure}; }
 };
 

@@ -314,7 +314,7 @@ void Batch::pad(const BatchPlan::Source& s, float* row) {
         for (size_t r = 0; r < s.rows; ++r) std::fill(row + r * stride + n, row + r * stride + padded_, row[r * stride + n - 1]);
 }
 
-void Batch::tell(const Batch& displaced) {
+void Batch::takeDisplacement(const Batch& displaced) {
     const size_t stride = size_t(call_.stride);
     for (const BatchPlan::Source& s : plan_->inputs_) {
         if (s.from != BatchPlan::From::Displacement) continue;
@@ -404,7 +404,7 @@ void Batch::fill(const BatchPlan::Source& s, float* row, const Points& points, c
         return fillSpace(s, row, points, views, spaces);
     case From::Parameter:
         return fillParameter(s, row, points, views);
-    case From::Displacement: // tell()
+    case From::Displacement: // takeDisplacement()
     case From::Nothing:
         std::fill_n(row, s.rows * size_t(call_.stride), 0.f);
         return;

@@ -11,8 +11,8 @@ namespace alpenglow::shading {
 
 /// Numeric parameters of a shader instance in current space, as flattened elements. Strings are compiled into the kernel.
 struct ParameterBlock {
-    std::map<std::string, std::vector<float>> numbers;
-    std::map<std::string, std::string> strings;
+    std::map<std::string, std::vector<float>> numbers; ///< by parameter, element after element
+    std::map<std::string, std::string> strings;        ///< by parameter
 };
 
 /// Resolves inputs of kind rsl::InputName::Kind::Space: one of the two spaces is "current".
@@ -26,7 +26,7 @@ public:
 /// A moving shader space: its matrices, and parameters given in it, at times of the shutter (0 to 1); linear in between.
 struct MovingSpace {
     std::vector<float> times;
-    std::vector<Matrix> toCurrent;
+    std::vector<Matrix> toCurrent; ///< shader space to "current", by time
     std::vector<ParameterBlock> parameters;
     /// The interval of keys that contains a time, by its first key, and in `way` the position in it, 0 to 1. Times outside are
     /// those of the ends.
@@ -39,15 +39,16 @@ struct MovingSpace {
 
 /// Per-instance data of the points in a batch, in addition to ShadePoint.
 struct InstanceView {
-    const ParameterBlock* parameters = nullptr;
-    const Matrix* shaderToCurrent = nullptr;
-    const MovingSpace* moving = nullptr;       ///< null: constant in time
-    const class ParameterRows* rows = nullptr; ///< the parameters in the kernel's order; null: looked up by name
+    const ParameterBlock* parameters = nullptr; ///< null: the shader's defaults
+    const Matrix* shaderToCurrent = nullptr;    ///< null: the shader was given in "current"
+    const MovingSpace* moving = nullptr;        ///< null: constant in time
+    const class ParameterRows* rows = nullptr;  ///< the parameters in the kernel's order; null: looked up by name
 };
 
 /// Sources of a kernel's inputs and positions of its rows: computed once for each kernel.
 class BatchPlan {
 public:
+    /// mixed: points of one batch may belong to several instances.
     explicit BatchPlan(const rsl::CompiledKernel&, bool mixed);
     /// Index of an output, or -1.
     int output(const rsl::OutputName&) const;
@@ -104,9 +105,9 @@ private:
 struct LightRows {
     /// A point without further data.
     struct Point {
-        const geometry::Shape* shape;
-        const geometry::SurfacePoint& surface;
-        float shutter = 0;
+        const geometry::Shape* shape;          ///< null: the light has no geometry
+        const geometry::SurfacePoint& surface; ///< point on the light, camera space
+        float shutter = 0;                     ///< time, 0 to 1 of the shutter
     };
     std::span<const float> P, N, Ps;
     size_t size() const { return P.size() / 3; }
@@ -115,15 +116,17 @@ struct LightRows {
 
 /// Inputs that most surface kernels read: points on surfaces that do not move.
 struct SurfaceRows {
+    /// One of the points.
     struct Point {
-        const geometry::Shape* shape;
-        const geometry::SurfacePoint& surface;
-        float shutter = 0;
+        const geometry::Shape* shape;          ///< its shape
+        const geometry::SurfacePoint& surface; ///< camera space
+        float shutter = 0;                     ///< surfaces do not move, so it does not matter
     };
     std::span<const geometry::SurfacePoint> surfaces;
     std::span<const geometry::Shape* const> shapes; ///< by surface
     std::span<const float> I, E;                    ///< incident vector, and ray origin: three rows each
     std::span<const float> du, dv;                  ///< if the plan usesFootprint()
+    /// The points.
     size_t size() const { return surfaces.size(); }
     Point operator[](size_t i) const { return {shapes[i], surfaces[i]}; }
 };
@@ -132,7 +135,9 @@ struct SurfaceRows {
 /// only, which must outlive it.
 class ParameterRows {
 public:
+    /// Copies the values. The block may go afterwards.
     ParameterRows(const BatchPlan&, const ParameterBlock&);
+    /// Null: for no kernel.
     const BatchPlan* plan() const { return plan_; }
 
 private:
@@ -144,8 +149,8 @@ private:
 /// A value for a parameter: as many elements as there are times the components of the kind. Texts are interned.
 struct GivenValue {
     rsl::ir::Kind kind = rsl::ir::Kind::Float;
-    bool array = false; ///< then its elements replace the first ones of the parameter
-    std::span<const float> numbers;
+    bool array = false;             ///< then its elements replace the first ones of the parameter
+    std::span<const float> numbers; ///< element after element; empty where texts are given
 };
 
 /// Aligned rows for inputs and outputs of one kernel call. Must outlive the call, including its suspensions.
@@ -170,7 +175,7 @@ public:
                 std::span<const InstanceView> views, std::span<const uint32_t> viewOf, const SpaceResolver&);
 
     /// Fills inputs that come from the displacement shader, including derivatives, from its run at the same points.
-    void tell(const Batch& displaced);
+    void takeDisplacement(const Batch& displaced);
     /// Overrides a parameter of that type at a point, if it is varying or an input of its own (rsl::InputName::sent); derivatives
     /// become 0. A parameter of another type is not changed.
     void give(std::string_view parameter, int point, const GivenValue&);

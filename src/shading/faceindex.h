@@ -3,6 +3,6 @@
 
 namespace alpenglow::shading {
 
-inline constexpr char kFaceIndex[] = "__faceindex";
+inline constexpr char kFaceIndex[] = "__faceindex"; ///< name of the variable with the number of a face (docs/ptex.md)
 
 } // namespace alpenglow::shading

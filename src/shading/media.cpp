@@ -7,7 +7,7 @@
 
 namespace alpenglow::shading {
 
-Vec3d FreeFlight::leftAt(float at) const {
+Vec3d FreeFlight::transmittanceAt(float at) const {
     Vec3d l(exact::exp(-double(extinction.x) * at));
     if (extinction.y != extinction.x) l.y = exact::exp(-double(extinction.y) * at);
     if (extinction.z != extinction.x) l.z = exact::exp(-double(extinction.z) * at);

@@ -26,6 +26,7 @@
 
 namespace alpenglow::shading {
 
+/// Index of a target of light.
 using AccumulatorId = int32_t;
 inline constexpr AccumulatorId kNoAccumulator = -1;
 
@@ -33,7 +34,7 @@ inline constexpr AccumulatorId kNoAccumulator = -1;
 /// first task spawned.
 struct TargetValue {
     Color radiance{0};
-    Color transmission{1};
+    Color transmission{1};  ///< of the medium and the surfaces on the way, by channel
     float distance = 1e38f; ///< to the nearest hit; > 1e30 on a miss (3Delight manual, 6.4.5.2)
     Vec3 normal;            ///< shading normal of that hit
 };
@@ -46,7 +47,7 @@ public:
     struct Task {
         int32_t depth = 0; ///< 0 = camera
         AccumulatorId target = kNoAccumulator;
-        Payload payload{};
+        Payload payload{}; ///< what the integrator keeps of the ray
     };
     using Tasks = TaskList<Task>;
 
@@ -73,7 +74,7 @@ public:
         virtual void followStrips(Scheduler&) {}
         /// Called when no task and no strip is left: continues with hits that follow() has held back with their targets. Returns
         /// false if there are none.
-        virtual bool settle(Scheduler&) { return false; }
+        virtual bool shadeQueued(Scheduler&) { return false; }
     };
 
     /// `stop`: polled between slices; once set, run() abandons the remaining work. May be null.
@@ -155,7 +156,7 @@ public:
     /// Works until everything is done or stop is set. Returns false if stopped.
     bool run() {
         Tasks slice;
-        while (queued_ > 0 || !ready_.empty() || service_.settle(*this)) {
+        while (queued_ > 0 || !ready_.empty() || service_.shadeQueued(*this)) {
             if (queued_ == 0 && ready_.empty()) continue;
             if (stop_ && *stop_) {
                 abandon();
@@ -213,7 +214,9 @@ public:
     }
 
     size_t frameBytes() const { return frameBytes_; } ///< of waiting strips
+    /// Beyond it kernels are no longer suspended side by side.
     size_t frameLimit() const { return frameLimit_; }
+    /// Largest value of frameBytes() so far.
     size_t peakFrameBytes() const { return peakFrameBytes_; }
     /// Memory that tasks and targets hold, and the most that frames of waiting strips have held since restart().
     size_t bytes() const {

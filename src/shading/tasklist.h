@@ -16,14 +16,20 @@ template <class Task> class TaskList {
     static_assert(std::is_trivially_copyable_v<Task> && std::is_trivially_destructible_v<Task>);
 
 public:
+    /// Number of tasks.
     size_t size() const { return size_; }
+    /// There is no task.
     bool empty() const { return size_ == 0; }
     size_t bytes() const { return capacity_ * sizeof(Task); } ///< memory that it holds
+    /// The first task, and the end behind the last; invalid after the list grows.
     Task* data() { return tasks_.get(); }
     const Task* data() const { return tasks_.get(); }
     Task* end() { return tasks_.get() + size_; }
+    /// The last task; the list is not empty.
     Task& back() { return tasks_[size_ - 1]; }
+    /// Keeps the memory.
     void clear() { size_ = 0; }
+    /// Exchanges contents, without copying tasks.
     void swap(TaskList& o) noexcept {
         std::swap(tasks_, o.tasks_);
         std::swap(size_, o.size_);

@@ -13,8 +13,8 @@ inline constexpr const char* kLight = "light";
 
 /// A footprint in texels of level 0: squared widths along the axes of its ellipse, and the unit vector of the longer.
 struct Ellipse {
-    float major = 0, minor = 0, x = 1, y = 0;
-    float across = 0; ///< squared width across its longer side, in maps
+    float major = 0, minor = 0, x = 1, y = 0; ///< in texels squared; (x, y) is the direction of `major`
+    float across = 0;                         ///< squared width across its longer side, in maps
 };
 
 /// The levels that interpolation at texel size u >= 1 blends: `level`, and of the next the part `next`.
@@ -26,9 +26,9 @@ LevelBlend blendOf(float u, int last);
 
 /// Destination of a lookup: all channels exist. Slopes (ds, dt) and curves may be null.
 struct Sums {
-    float *out, *ds, *dt, *dss, *dst, *dtt;
-    int first, count;
-    bool asLight;
+    float *out, *ds, *dt, *dss, *dst, *dtt; ///< `count` numbers each: value, and first and second derivatives by s and t
+    int first, count;                       ///< channels of the map
+    bool asLight;                           ///< linear light instead of the numbers of the file
     /// Adds weight times the map at (s, t), interpolated in and between levels.
     void add(const Texture&, const LevelBlend&, float s, float t, Wrap swrap, Wrap twrap, float weight) const;
 };

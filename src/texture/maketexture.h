@@ -10,14 +10,14 @@ namespace alpenglow::texture {
 struct MakeOptions {
     std::string swrap = "black", twrap = "black"; ///< RISpec's default; lat-long maps: periodic, clamp
     std::string filter = "box";                   ///< of the reduction; widths multiply the filter's own (pyramid.h)
-    float swidth = 1, twidth = 1;
+    float swidth = 1, twidth = 1;                 ///< times the width of the filter
     /// Interpretation of pictures, regardless of what they declare. Srgb: converts to linear light. Auto: keeps the declaration,
     /// and whether they had 8 bits, so that the map is read like the picture.
     enum class Colours { Auto, Light, Srgb } colours = Colours::Auto;
     std::vector<std::string> searchPath{""}; ///< of the picture
-    OutputPolicy policy;
-    ReadPolicy read{}; ///< where the names of pictures may lead
-    SourcePlace place;
+    OutputPolicy policy;                     ///< where the map may be written
+    ReadPolicy read{};                       ///< where the names of pictures may lead
+    SourcePlace place;                       ///< of the request, for messages
 };
 
 /// Pictures may be files of bake() (pointcloud/bakefile.h), also "name&binary". Returns false after an error, which is reported;

@@ -33,6 +33,7 @@ template <class T> class Texels {
 public:
     static constexpr size_t kBeyond = 4;
     Texels() = default;
+    /// Keeps the numbers in memory.
     Texels(std::vector<T> own) : size_(own.size()) {
         if (own.empty()) return;
         own.resize(size_ + kBeyond);
@@ -62,12 +63,13 @@ private:
 /// same floats); reduced levels are floats. A map with a transfer curve has both the numbers of the file, and linear light. Each
 /// level holds the mean of either, because the light of a mean is not the mean of the light.
 struct Level {
-    int width = 0, height = 0, channels = 0;
+    int width = 0, height = 0, channels = 0; ///< texels; numbers of a texel
     Texels<float> values;
     Texels<uint8_t> codes; ///< when not empty, instead of values
     Texels<float> light;   ///< the values as light; empty: where there are codes by `table`, else there is no difference
     std::shared_ptr<const CodeTable> table; ///< the light of codes; null: there is no difference
     uint32_t colours = 0;                   ///< bit c: `table` holds for channel c
+    /// Memory of the level.
     size_t bytes() const { return values.bytes() + light.bytes() + codes.bytes(); }
     /// Channel c of a texel; `at` counts all channels.
     float texel(size_t at, int c, bool asLight) const {
@@ -100,7 +102,7 @@ struct Level {
 /// gaussian 2, catmull-rom, mitchell 4, lanczos 4 (sinc is lanczos, disk is box, bessel and others gaussian).
 struct Reduction {
     std::string_view filter = "box";
-    float swidth = 1, twidth = 1;
+    float swidth = 1, twidth = 1; ///< times the width of the filter
 };
 /// Whether Reduction supports a filter.
 bool isReductionFilter(std::string_view name);
@@ -113,8 +115,9 @@ std::vector<display::Image> reducedLevels(const display::Image&, const Reduction
                                           Wrap twrap = Wrap::Clamp);
 /// A picture that is read row by row: read(y, row) fills width times channels numbers.
 struct PictureRows {
-    int width = 0, height = 0;
+    int width = 0, height = 0; ///< in pixels
     std::vector<std::string> channels;
+    /// Thread safe if the maker asks for threads.
     std::function<void(int, float*)> read;
 };
 /// The same of such a picture.

@@ -45,7 +45,7 @@ Vec3d deepPart(const Texture& map, double s, double t, double z) {
             const int px = x0 + i, py = y0 + j;
             if (px < 0 || py < 0 || px >= width || py >= height) continue;
             double left[3];
-            map.deep->leftAt(size_t(py) * size_t(width) + size_t(px), z, left);
+            map.deep->transmittanceAt(size_t(py) * size_t(width) + size_t(px), z, left);
             sum = sum + Vec3d(1 - left[0], 1 - left[1], 1 - left[2]) * ((i ? fx : 1 - fx) * (j ? fy : 1 - fy));
         }
     return sum;

@@ -259,7 +259,7 @@ std::shared_ptr<const Texture> TextureSystem::load(const std::string& path, cons
             }
             auto tex = std::const_pointer_cast<Texture>(makeTextureFrom(std::move(*image), settings_));
             tex->path = path;
-            settle(*tex, place);
+            pageOut(*tex, place);
             if (tex->kind == Kind::Shadow && holdsNoDepth(*tex))
                 diags_.report(Severity::Warning, Rie::MissingData, place,
                               "shadow map \"" + path + "\" is empty: nothing in it casts a shadow",

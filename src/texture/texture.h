@@ -35,14 +35,14 @@ class ScratchFile;
 
 /// A loaded map; immutable. Of a UDIM set and of a cube map: no levels, only tiles.
 struct Texture {
-    std::string path;
-    Kind kind = Kind::Texture;
-    std::vector<std::string> channels;
-    std::vector<Level> levels; ///< 0 is the picture
-    Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;
-    std::optional<Matrix> worldToCamera, worldToNDC;
-    int bits = 8;
-    bool floating = false;
+    std::string path;                                ///< the file
+    Kind kind = Kind::Texture;                       ///< what it was made for
+    std::vector<std::string> channels;               ///< names, in the order of the numbers of a texel
+    std::vector<Level> levels;                       ///< 0 is the picture
+    Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;   ///< outside 0 to 1
+    std::optional<Matrix> worldToCamera, worldToNDC; ///< of shadow maps and of pictures of a camera; nothing: not stored
+    int bits = 8;                                    ///< of a number in the file
+    bool floating = false;                           ///< numbers in the file are floats
     /// By UDIM number, 1001 + floor(s) + 10 floor(t); faces of a cube by 0..5: px nx py ny pz nz.
     std::map<int, std::shared_ptr<const Texture>> tiles;
     std::shared_ptr<const display::DeepSamples> deep; ///< of a deep shadow map; levels[0] has its first surfaces
@@ -68,18 +68,18 @@ std::optional<Filter> filterByName(std::string_view name);
 
 /// 3Delight manual, table 6.16.
 struct LookupOptions {
-    float swidth = 1, twidth = 1; ///< multiply the derivatives
-    float sblur = 0, tblur = 0;   ///< as a fraction of the map
-    Filter filter = Filter::Gaussian;
-    bool asLight = false; ///< colours of maps with a transfer curve: as linear light (TextureSettings::light)
-    float squeeze = 0;    ///< 1 / n^2: the footprint is widened until its sides are at most n to 1; 0: any
-    float fill = 0;       ///< value of channels that the map does not have
-    float lerp = 0;       ///< accepted; levels are always interpolated, a switch would show as an edge
+    float swidth = 1, twidth = 1;     ///< multiply the derivatives
+    float sblur = 0, tblur = 0;       ///< as a fraction of the map
+    Filter filter = Filter::Gaussian; ///< shape of the filter
+    bool asLight = false;             ///< colours of maps with a transfer curve: as linear light (TextureSettings::light)
+    float squeeze = 0;                ///< 1 / n^2: the footprint is widened until its sides are at most n to 1; 0: any
+    float fill = 0;                   ///< value of channels that the map does not have
+    float lerp = 0;                   ///< accepted; levels are always interpolated, a switch would show as an edge
 };
 
 /// A footprint as squared widths in (s, t): the sum of the outer products of its two side vectors.
 struct Footprint {
-    float ss = 0, st = 0, tt = 0;
+    float ss = 0, st = 0, tt = 0; ///< in maps squared
     /// From the two side vectors, (dsdx, dtdx) and (dsdy, dtdy).
     static Footprint sides(float dsdx, float dtdx, float dsdy, float dtdy);
 };
@@ -137,14 +137,14 @@ void environmentLatLongQuad(Handle, const LatLong&, int first, int count, const 
 
 /// textureinfo() fields.
 struct TextureInfo {
-    int width = 0, height = 0, channels = 0, bits = 0;
-    bool floating = false;
-    std::string type; ///< "texture", "environment", "shadow"
-    Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;
-    float gamma = 1;                           ///< file value = light ^ gamma, as the file declares it
-    int faces = 0;                             ///< 6: a cube map
-    bool alpha = false;                        ///< one of the channels is opacity, "a"
-    std::optional<Matrix> viewing, projection; ///< world to camera, world to screen (x -1..1, y 1..-1) of the map
+    int width = 0, height = 0, channels = 0, bits = 0; ///< of level 0; bits of a number
+    bool floating = false;                             ///< numbers are floats
+    std::string type;                                  ///< "texture", "environment", "shadow"
+    Wrap swrap = Wrap::Clamp, twrap = Wrap::Clamp;     ///< outside 0 to 1
+    float gamma = 1;                                   ///< file value = light ^ gamma, as the file declares it
+    int faces = 0;                                     ///< 6: a cube map
+    bool alpha = false;                                ///< one of the channels is opacity, "a"
+    std::optional<Matrix> viewing, projection;         ///< world to camera, world to screen (x -1..1, y 1..-1) of the map
 };
 
 /// What is the same for all maps of a world.
@@ -166,6 +166,7 @@ struct TextureSettings {
 /// The maps of a render. Thread safe.
 class TextureSystem {
 public:
+    /// settings: limits of memory, search paths.
     explicit TextureSystem(Diagnostics&, TextureSettings = {});
     ~TextureSystem();
     /// Opens the map called name along a search path (base/file.h findFile: also by other case, backslashes, or base name, which
@@ -184,7 +185,7 @@ public:
     size_t scratchBytes() const;
     /// The files read, by name: bytes on disk, of the map in memory, and of levels in a scratch file.
     struct File {
-        std::string path;
+        std::string path; ///< of the file
         size_t bytes = 0, memory = 0, scratch = 0;
     };
     /// Sorted by name.
@@ -208,7 +209,7 @@ private:
                                              const SourcePlace&);
     void trim();
     /// Moves the levels of a map to a scratch file if they do not fit into memory. If the disk is full they stay, with a warning.
-    void settle(Texture&, const SourcePlace&);
+    void pageOut(Texture&, const SourcePlace&);
     std::shared_ptr<const Texture> loadFaces(const std::string& name, const std::vector<std::string>& searchPath,
                                              const SourcePlace&);
     Diagnostics& diags_;

@@ -13,9 +13,10 @@ namespace alpenglow::texture {
 
 /// A block of voxels in memory.
 struct Volume {
-    int width = 0, height = 0, depth = 0;
-    std::vector<std::string> names; ///< of channels
-    std::vector<float> values;      ///< slice by slice, row by row, interleaved
+    int width = 0, height = 0, depth = 0; ///< voxels
+    std::vector<std::string> names;       ///< of channels
+    std::vector<float> values;            ///< slice by slice, row by row, interleaved
+    /// Numbers of a voxel.
     int channels() const { return int(names.size()); }
     /// The channels of a voxel. No check of the range.
     const float* at(int x, int y, int z) const {
@@ -33,9 +34,9 @@ bool namesVolume(const std::string& name);
 
 /// Where volumes are looked up, and for whom.
 struct VolumeFiles {
-    std::vector<std::string> searchPath{""};
-    ReadPolicy read{};
-    SourcePlace place;
+    std::vector<std::string> searchPath{""}; ///< folders, in order
+    ReadPolicy read{};                       ///< where names may lead
+    SourcePlace place;                       ///< of the request or call, for messages
 };
 /// Loads the slices of a name, or a picture of volumeFormat. Returns nothing after an error, which is reported.
 std::optional<Volume> loadVolume(const std::string& name, const VolumeFiles&, Diagnostics&);

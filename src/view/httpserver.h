@@ -10,18 +10,20 @@
 
 namespace alpenglow::view {
 
+/// A request of a client.
 struct HttpRequest {
     std::string method;                           ///< "GET" or "POST"
     std::string path;                             ///< the part before ?, not decoded
     std::map<std::string, std::string> arguments; ///< behind ?, decoded
-    std::string body;
-    std::string host, origin; ///< headers; "" when missing
+    std::string body;                             ///< at most HttpLimits::bodyBytes
+    std::string host, origin;                     ///< headers; "" when missing
 };
 
+/// What a client gets.
 struct HttpResponse {
-    int status = 200;
-    std::string type = "text/plain; charset=utf-8";
-    std::string body;
+    int status = 200;                               ///< HTTP status code
+    std::string type = "text/plain; charset=utf-8"; ///< media type
+    std::string body;                               ///< bytes
 };
 
 /// Limits on the resources that clients can use.
@@ -36,6 +38,7 @@ struct HttpLimits {
     double waitSeconds = 15;    ///< that an answer may be put off
 };
 
+/// The server. It stops when it is destroyed.
 class HttpServer {
 public:
     /// Runs on the server's thread. Returns nothing if there is no response yet; called again after wake(), and with `last` at
@@ -45,6 +48,7 @@ public:
     /// Listens on 127.0.0.1; port 0: any free port. Returns null after an error, with *fault.
     static std::unique_ptr<HttpServer> listen(int port, std::string* fault, HttpLimits = {});
     ~HttpServer();
+    /// That it listens on.
     int port() const { return port_; }
     /// Begins to answer. Once.
     void start(Handler);

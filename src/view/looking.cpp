@@ -223,7 +223,7 @@ void Session::shoot(const render::Glance& g, const Means& means) {
             curve_.push_back({f.seconds, f.spp, f.raysPerMS, f.noiseRSE, f.efficiency});
         }
     }
-    tell();
+    notifyViewers();
 }
 
 std::string Session::freeName(const std::string& type, const render::Film* film) const {
@@ -244,7 +244,7 @@ void Session::savePending(const Means& means, const render::Film* film, const st
         saves.swap(saves_);
     }
     for (const Save& s : saves) save(s, means, film, image());
-    tell();
+    notifyViewers();
 }
 
 /// Saves like render -o: PNG with the curve of the page, EXR with linear values. Lights as dimmed.

@@ -5,11 +5,12 @@
 
 namespace alpenglow::view {
 
+/// A file of the page, compiled into the program.
 struct PageFile {
-    const char* name;
-    const char* type;
-    const char* text;
-    size_t size;
+    const char* name; ///< in the URL
+    const char* type; ///< media type
+    const char* text; ///< contents, zero-terminated
+    size_t size;      ///< bytes, without the zero
 };
 /// Null: there is none of that name.
 const PageFile* pageFile(const std::string& name);

@@ -13,23 +13,26 @@ namespace alpenglow::view {
 /// A named plane of the picture. Planes of one picture have the same size; linear floats, channels interleaved.
 struct Plane {
     std::string name; ///< "picture" (r g b a z), "noise", "light:HANDLE", or as a display's mode has it
-    std::shared_ptr<const display::Image> image;
+    std::shared_ptr<const display::Image> image; ///< null: there is no picture yet
 };
 
+/// Figures of a render, for the page.
 struct Figures {
-    double seconds = 0, spp = 0, raysPerMS = 0;
-    double noiseRSE = 0, noiseRSE999 = 0, efficiency = 0;
-    double noise = 0, noiseAtMost = 0; ///< as printed by render, and the bound compared with --noise
+    double seconds = 0, spp = 0, raysPerMS = 0;           ///< since it began; samples a pixel; rays a millisecond
+    double noiseRSE = 0, noiseRSE999 = 0, efficiency = 0; ///< of render/noise.h
+    double noise = 0, noiseAtMost = 0;                    ///< as printed by render, and the bound compared with --noise
 };
 
+/// What is shown, complete and immutable.
 struct Picture {
     int width = 0, height = 0; ///< of the complete picture
     render::Window window;     ///< that the planes cover, in their own pixels
     double stepX = 1,
            stepY = 1;          ///< pixels of the complete picture per pixel of the planes: more than 1 for a coarse one
     std::vector<Plane> planes; ///< "picture" first
-    Figures figures;
-    uint64_t number = 0; ///< of all pictures of a session: no two have the same
+    Figures figures;           ///< when it was taken
+    uint64_t number = 0;       ///< of all pictures of a session: no two have the same
+    /// By name; null: there is no such plane.
     const Plane* plane(const std::string& name) const;
 };
 

@@ -12,6 +12,7 @@ namespace alpenglow::view {
 /// Observes a render, for at most a fiftieth of its time, and forwards linear float pictures.
 class Preview : public render::Watcher {
 public:
+    /// Messages go there.
     explicit Preview(Diagnostics& d) : diagnostics_(d) {}
     void begin(const render::WatchedFrame&) final;
     void look(const render::Glance&) final;
@@ -37,7 +38,7 @@ private:
 /// Several that look on.
 class Watchers final : public render::Watcher {
 public:
-    std::vector<std::unique_ptr<render::Watcher>> all;
+    std::vector<std::unique_ptr<render::Watcher>> all; ///< in the order of the calls
     void begin(const render::WatchedFrame& f) override {
         for (auto& w : all) w->begin(f);
     }
@@ -51,8 +52,8 @@ public:
 
 /// Bytes to look at, rows from the top.
 struct Bytes {
-    int width = 0, height = 0;
-    std::vector<uint8_t> rgb;
+    int width = 0, height = 0; ///< pixels
+    std::vector<uint8_t> rgb;  ///< three a pixel
 };
 /// The red, green and blue of a picture as sRGB, each pixel the mean of what it covers.
 Bytes shrunk(const display::Image&, int width, int height);
@@ -63,14 +64,16 @@ std::string sixels(const Bytes&);
 /// The graphics protocol of kitty; the cursor stays.
 std::string kittyGraphics(const Bytes&);
 
+/// How a terminal shows pictures. Blocks: two coloured pixels a character.
 enum class TerminalKind { Blocks, Sixel, Kitty };
 /// "blocks", "sixel", "kitty".
 std::optional<TerminalKind> terminalKindByName(const std::string&);
 /// Capabilities of this process's terminal: from environment variables and its device attributes.
 TerminalKind terminalKind();
 
+/// A terminal.
 struct TerminalSize {
-    int columns = 80, rows = 24, cellWidth = 8, cellHeight = 16;
+    int columns = 80, rows = 24, cellWidth = 8, cellHeight = 16; ///< in characters; of a character in pixels
 };
 /// Of standard error; defaults where it is no terminal.
 TerminalSize terminalSize();
@@ -78,7 +81,9 @@ TerminalSize terminalSize();
 /// Draws over its previous picture, above the progress line.
 class TerminalPreview final : public Preview {
 public:
+    /// Receives text for the terminal.
     using Sink = std::function<void(const std::string&)>;
+    /// sink: writes to the terminal, in the thread that renders.
     TerminalPreview(Diagnostics& d, TerminalKind k, TerminalSize s, Sink sink)
         : Preview(d), kind_(k), size_(s), sink_(std::move(sink)) {}
     /// Other output was printed: the next picture is drawn below it.
@@ -101,6 +106,7 @@ std::string tevCreate(const std::string& name, int width, int height, const std:
 std::string tevUpdate(const std::string& name, int x, int y, int width, int height, const std::vector<std::string>& channels,
                       const std::vector<float>&);
 
+/// Shows the picture in the viewer tev.
 class TevPreview final : public Preview {
 public:
     /// Connects to the viewer. Returns null, with a warning, if it does not respond or the name is invalid; rendering continues

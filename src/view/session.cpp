@@ -85,7 +85,7 @@ void Session::start() {
     if (options_.watch) watching_ = std::thread([this] { watchFiles(); });
 }
 
-void Session::tell() {
+void Session::notifyViewers() {
     {
         std::lock_guard lock(mutex_);
         ++serial_;
@@ -100,7 +100,7 @@ void Session::setPhase(Phase p) {
         phase_ = p;
         phaseSince_ = Clock::now();
     }
-    tell();
+    notifyViewers();
 }
 
 void Session::say(const Diagnostic& d) {
@@ -117,7 +117,7 @@ void Session::say(const Diagnostic& d) {
         }
         messages_.push_back({d, 1});
     }
-    tell();
+    notifyViewers();
 }
 
 /// Requires mutex_. Interrupts the current pass.
@@ -217,7 +217,7 @@ void Session::run() {
                 done_ = generation_;
             }
             setPhase(Phase::Idle);
-            tell(); // that all is done
+            notifyViewers(); // that all is done
         } catch (const std::bad_alloc&) { giveUp("out of memory"); } catch (const std::exception& e) {
             giveUp(e.what());
         }
@@ -240,7 +240,7 @@ void Session::giveUp(const std::string& why) {
     }
     say({Severity::Severe, Rie::NoMem, {options_.scene}, "the picture is given up: " + why, {}, {}});
     setPhase(Phase::Idle);
-    tell();
+    notifyViewers();
 }
 
 /// On a separate thread, because a pass may take minutes.

@@ -21,8 +21,8 @@ namespace alpenglow::view {
 
 /// Options of the command line.
 struct ViewOptions {
-    render::RenderSettings settings;
-    ri::ReaderOptions reader;
+    render::RenderSettings settings;          ///< as of `alpenglow render`
+    ri::ReaderOptions reader;                 ///< as of `alpenglow render`
     std::string scene;                        ///< a file
     std::optional<int> frame;                 ///< frame number; nothing: the first with a picture
     bool watch = false;                       ///< read again when a file of the scene changes
@@ -34,10 +34,11 @@ struct ViewOptions {
 
 /// A message for the page; may represent several similar ones.
 struct Message {
-    Diagnostic diagnostic;
-    int count = 1;
+    Diagnostic diagnostic; ///< the last one
+    int count = 1;         ///< how many it stands for
 };
 
+/// One scene that is viewed. Public functions may be called by any thread.
 class Session final : private render::Watcher {
 public:
     /// `changed` is called, from any thread, when there is something new for viewers.
@@ -54,8 +55,8 @@ public:
     uint64_t serial() const;
     struct Shot {
         std::shared_ptr<const Picture> picture; ///< null: none yet
-        uint64_t serial = 0;
-        std::map<std::string, double> dim;
+        uint64_t serial = 0;                    ///< serial() when it was taken
+        std::map<std::string, double> dim;      ///< factors of lights by handle, 0 dark, as the viewers set them
     };
     /// Somebody looks, at this plane ("picture", "noise", ...).
     Shot look(const std::string& plane);
@@ -100,7 +101,7 @@ private:
     void giveUp(const std::string& why);
     void say(const Diagnostic&);
     void interrupt();
-    void tell();
+    void notifyViewers();
     nlohmann::json moveCamera(const nlohmann::json&);
     nlohmann::json askSave(const nlohmann::json&);
 

@@ -8,7 +8,9 @@ namespace alpenglow::view {
 /// Answers requests with the token that come to this port under a name of this machine; rejects all others.
 class ViewServer {
 public:
+    /// token: the secret that each request must have. Session and server must outlive this.
     ViewServer(Session&, HttpServer&, std::string token);
+    /// HttpServer::Handler.
     std::optional<HttpResponse> answer(const HttpRequest&, bool last, bool* known);
     /// For the browser.
     std::string address() const;

@@ -15,11 +15,12 @@ inline constexpr size_t kMostChannels = 16;
 /// Maximum number of distinguishable lights: one less than light path labels, with room for the scene's own.
 inline constexpr size_t kMostLights = 24;
 
+/// What viewers have set, in addition to the scene.
 struct Wishes {
-    bool continuous = true, paused = false;
-    uint32_t spp = 64; ///< samples a pixel, where it is not continuous
-    int depth = -1;    ///< -1: as in the scene
-    bool direct = true, indirect = true;
+    bool continuous = true, paused = false;    ///< continuous: rendering continues until something changes
+    uint32_t spp = 64;                         ///< samples a pixel, where it is not continuous
+    int depth = -1;                            ///< -1: as in the scene
+    bool direct = true, indirect = true;       ///< kinds of light that are shown
     double factor = 1;                         ///< of the resolution
     double clamp = 0;                          ///< of samples; 0: off
     std::string hider;                         ///< "": the scene's

@@ -11,10 +11,10 @@ namespace alpenglow::world {
 /// Stored in rows, by lobe. The density around an axis falls as 1 / (1 + k (1 - cosine))^2: its tail covers what few photons
 /// showed.
 struct alignas(32) AimedLobes {
-    static constexpr int kMost = 8;
-    float aim[3][kMost] = {};
-    float perRadius2[kMost] = {}; ///< two over the squared size that a lobe covers around its aim
-    float share[kMost] = {};      ///< mixture weight; 0: unused
+    static constexpr int kMost = 8; ///< most lobes
+    float aim[3][kMost] = {};       ///< centres of the lobes: points, camera space
+    float perRadius2[kMost] = {};   ///< two over the squared size that a lobe covers around its aim
+    float share[kMost] = {};        ///< mixture weight; 0: unused
 
     /// Light that came to P from `aim`.
     struct Target {

@@ -49,11 +49,11 @@ public:
 
     /// A light sample.
     struct Sample {
-        const geometry::Shape* shape = nullptr;
-        float pdf = 0;  ///< per steradian as seen from the lit point; > 0
-        Vec3 direction; ///< unit, from the lit point to the light
-        float distance = 0;
-        uint32_t visibility = ~0u; ///< kinds of rays that could also have hit this shape
+        const geometry::Shape* shape = nullptr; ///< null: no sample
+        float pdf = 0;                          ///< per steradian as seen from the lit point; > 0
+        Vec3 direction;                         ///< unit, from the lit point to the light
+        float distance = 0;                     ///< from the lit point
+        uint32_t visibility = ~0u;              ///< kinds of rays that could also have hit this shape
     };
     /// Samples a point on the light for the lit point `from`. Returns false if the sample is edge-on or coincides with `from`.
     /// needs: geometry::PointNeed of `point`; time: of the shutter, 0 to 1.

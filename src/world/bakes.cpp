@@ -38,7 +38,7 @@ void setSize(shading::GridPoint& g, const geometry::SurfacePoint& p) {
 
 bool bakes(const World& world) {
     const auto* w = dynamic_cast<const WorldImpl*>(&world); // tests of other folders use their own World
-    return w && w->clouds().bakes;
+    return w && w->needs().bakes;
 }
 
 std::vector<uint32_t> bakedShapes(const World& world) {
@@ -67,19 +67,11 @@ bool bakesAllOrNone(const World& world, uint32_t shape) {
     return !varies;
 }
 
-void noteLightsOfBakes(const World& world) {
-    CloudStore& c = implOf(world).clouds();
-    c.lightsRan.clear();
-    c.notesLights = true;
-}
-
-bool bakingLightsRan(const World& world, uint32_t shape) {
+bool bakingLightsRan(const World& world, uint32_t shape, std::span<const uint64_t> runs) {
     const WorldImpl& w = implOf(world);
-    w.clouds().notesLights = false;
     bool missing = false;
     w.eachLight(w.bindings()[size_t(w.bindingOf()[shape])].lights, [&](int l) {
-        const BoundLight& light = w.lights()[size_t(l)];
-        return missing |= bakesAt(light.kernel) && !w.clouds().lightsRan.count(&light);
+        return missing |= bakesAt(w.lights()[size_t(l)].kernel) && (size_t(l) >= runs.size() || !runs[size_t(l)]);
     });
     return !missing;
 }
@@ -89,7 +81,7 @@ void bakedPoints(const World& world, uint32_t shape, std::vector<shading::GridPo
     const size_t before = to.size();
     std::vector<Vec3> P;
     const geometry::Shape& s = *w.shapes()[shape];
-    shading::gridOf(s, geometry::DiceCamera::from(w.frame().options), w.clouds().centres, to, P);
+    shading::gridOf(s, geometry::DiceCamera::from(w.frame().options), w.needs().bakesCentres, to, P);
     size_t kept = before;
     for (size_t i = before; i < to.size(); ++i) {
         to[i].shape = shape;
@@ -110,7 +102,7 @@ bool bakedNow(const World& world) { return implOf(world).clouds().baked.pending(
 
 void commitBakes(const World& world, bool keep) {
     pointcloud::BakeLog& log = implOf(world).clouds().baked;
-    keep ? log.settle() : log.discard();
+    keep ? log.commit() : log.discard();
 }
 
 bool writeBakes(const World& world, bool allowWrite, const pointcloud::FileOwners& others, Diagnostics& d) {

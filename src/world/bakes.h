@@ -4,6 +4,7 @@
 #include "pointcloud/bakelog.h"
 #include "shading/gridpoint.h"
 #include "world/world.h"
+#include <span>
 #include <vector>
 
 namespace alpenglow::world {
@@ -15,10 +16,9 @@ std::vector<uint32_t> bakedShapes(const World&);
 /// Whether either all points of this shape bake or none, i.e. the conditions around the baking calls are uniform. For lights: all
 /// points at which they run.
 bool bakesAllOrNone(const World&, uint32_t shape);
-/// Starts to record which lights run. Call while no thread traces.
-void noteLightsOfBakes(const World&);
-/// Stops recording. Returns whether every light that could bake at the shape has run. Call while no thread traces.
-bool bakingLightsRan(const World&, uint32_t shape);
+/// Whether every light that could bake at the shape has run. runs: integrator::Counters::lightRuns, of the rays in question
+/// alone.
+bool bakingLightsRan(const World&, uint32_t shape, std::span<const uint64_t> runs);
 /// Appends the grid points of a shape in order, without points of CSG solids that are not on the boundary.
 void bakedPoints(const World&, uint32_t shape, std::vector<shading::GridPoint>&);
 /// Where a grid point lies, camera space; on a displaced surface after displacement.

@@ -1,4 +1,5 @@
 // Resolves the call sites of a kernel, once per kernel.
+#include "rsl/front/headers.h"
 #include "scene/scene.h"
 #include "shadeops/distributions.h"
 #include "shadeops/specular.h"
@@ -66,7 +67,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         auto f = i.text.find(name);
         return f == i.text.end() ? std::string() : f->second;
     };
-    auto said = [&](const std::string& what, const std::string& message) {
+    auto reported = [&](const std::string& what, const std::string& message) {
         world.diagnostics().reportOnce("trace:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::Unimplement, place, s.op + "(): " + message, {}, {}});
     };
@@ -90,7 +91,7 @@ std::shared_ptr<const TraceSite> traceSite(const SiteInfo& i, const rsl::ir::Sit
         t->lobes.push_back(row(("lobeparameters[" + std::to_string(n) + "]").c_str()));
     t->distribution = row("distribution") >= 0 ? row("distribution") : row("bsdf");
     for (const char* name : {"environmentmap", "environmentspace"})
-        if (row(name) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
+        if (row(name) >= 0) reported(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     if (const std::string map = text("environmentmap"); !map.empty()) {
         t->map = world.textures().open(map, world.settings().texturePaths, place);
         if (const std::string space = text("environmentspace"); !space.empty()) world.matrix("current", space, t->toMap);
@@ -129,8 +130,8 @@ std::shared_ptr<const OcclusionSite> occlusionSite(const SiteInfo& i, const rsl:
     return o;
 }
 
-/// Parameters of shadow() beyond texture(): from the call, else from Option "shadow".
-void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options) {
+/// Parameters of shadow() beyond texture(): from the call, else from Option "shadow"; usual: the bias where both set none.
+void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options, float usual) {
     const auto row = [&](const char* name) {
         const auto f = i.named.find(name);
         return f == i.named.end() ? -1 : f->second;
@@ -147,7 +148,7 @@ void shadowSite(TextureSite& t, const SiteInfo& i, const scene::Options& options
         return f == options.values.end() || f->second.numbers.empty() ? otherwise : f->second.numbers[0];
     };
     t.shadowSamples = number("shadow:sample", 16);
-    const float bias = number("shadow:bias", .225f);
+    const float bias = number("shadow:bias", usual);
     t.shadowBias0 = number("shadow:bias0", bias);
     t.shadowBias1 = std::max(t.shadowBias0, number("shadow:bias1", std::max(bias, t.shadowBias0)));
 }
@@ -165,7 +166,7 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
         const auto f = i.text.find(name);
         return f == i.text.end() ? std::string() : f->second;
     };
-    const auto said = [&](const std::string& what, const std::string& message, const std::string& hint = {}) {
+    const auto reported = [&](const std::string& what, const std::string& message, const std::string& hint = {}) {
         world.diagnostics().reportOnce("subsurface:" + what + place.file + std::to_string(place.line),
                                        {Severity::Warning, Rie::Unimplement, place, "subsurface(): " + message, hint, {}});
     };
@@ -182,18 +183,18 @@ std::shared_ptr<const SubsurfaceSite> subsurfaceSite(const SiteInfo& i, const rs
     for (size_t a = 0; a < i.rows.size(); ++a)
         if (s.argKinds[a] == rsl::ir::Kind::Triple) (b->point < 0 ? b->point : b->normal) = i.rows[a];
     for (const char* name : {"model", "groupname"})
-        if (row({name}) >= 0) said(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
+        if (row({name}) >= 0) reported(name, "\"" + std::string(name) + "\" must be a constant in the shader; it is ignored");
     const std::string type = !text("type").empty() ? text("type") : s.strings.empty() ? "" : s.strings[0];
     if (type == "pointcloud" && !i.text.count(rsl::kPairPoints))
-        said("type", "name a point cloud by \"filename\"; without one rays compute the light");
+        reported("type", "name a point cloud by \"filename\"; without one rays compute the light");
     else if (!type.empty() && type != "pointcloud" && type != "raytrace")
-        said("type " + type, "unknown type \"" + type + "\"; rays compute the light", "types are raytrace and pointcloud");
+        reported("type " + type, "unknown type \"" + type + "\"; rays compute the light", "types are raytrace and pointcloud");
     const std::string model = text("model");
     if (model == "jensen") b->model = SubsurfaceSite::Model::Dipole;
     else if (model == "grosjean") b->model = SubsurfaceSite::Model::BetterDipole;
     else if (!model.empty() && model != "walk")
-        said("model " + model, "unknown model \"" + model + "\"; random walks below the surface are used",
-             "models are walk, jensen and grosjean");
+        reported("model " + model, "unknown model \"" + model + "\"; random walks below the surface are used",
+                 "models are walk, jensen and grosjean");
     return b;
 }
 
@@ -231,7 +232,7 @@ std::shared_ptr<const TextureSite> textureSite(const SiteInfo& i, const rsl::ir:
     t->firsts = t->count * (i.kind == SiteKind::Texture ? 2 : 3);
     if (i.kind == SiteKind::Shadow) {
         t->slopes = 0;
-        shadowSite(*t, i, options);
+        shadowSite(*t, i, options, rsl::front::dialectShadowBias(world.settings().dialect));
     }
     t->rows.assign(i.rows.begin() + (t->computed && !i.rows.empty()), i.rows.end());
     return t;
@@ -365,6 +366,20 @@ static void bindRows(SiteInfo& i, const rsl::ir::Site& s) {
                  result("unshadowedarealight")};
 }
 
+static KernelNeeds needsOf(const BoundKernel& b) {
+    KernelNeeds n;
+    n.footprints = b.plan->usesFootprint();
+    for (const SiteInfo& i : b.sites) {
+        n.footprints |= i.rays && i.rays->base >= 0; // "samplebase" is a fraction of the footprint
+        n.hitModes |= i.rays && (i.rays->set.mode != shading::HitMode::Default || i.rays->mode >= 0);
+        n.records |= (i.trace && i.trace->records.call) || (i.occlusion && i.occlusion->records.call);
+        n.globalPhotons |= i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere);
+        n.facePlaces |= i.service && (i.service->traits & kReadsFacePlaces);
+        if (i.cloud && i.cloud->writes) n.bakes = true, n.bakesCentres |= i.cloud->centres >= 0;
+    }
+    return n;
+}
+
 BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed, bool path, const WorldImpl& world) {
     BoundKernel b;
     b.path = path;
@@ -379,7 +394,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (readsPoints(i)) {
             i.kind = s.op == "subsurface" ? SiteKind::PointSubsurface : SiteKind::PointHemisphere;
             auto points = std::make_shared<PointSite>(*pointSite(i, *k, world));
-            if (s.op == "subsurface") points->below = *subsurfaceSite(i, s, *k, world);
+            if (s.op == "subsurface") points->subsurface = *subsurfaceSite(i, s, *k, world);
             i.points = std::move(points);
         }
         if (!s.strings.empty() && !s.strings[0].empty()) i.nameId = rsl::internString(s.strings[0]);
@@ -395,8 +410,6 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
         if (const auto category = i.named.find("category"); category != i.named.end()) i.rowCategory = category->second;
         bindSent(i);
         if (i.service && i.service->bind) i.service->bind(i, *k, world);
-        b.needs.globalPhotons |= i.kind == SiteKind::Trace && i.text.count(rsl::kPairHemisphere);
-        b.needs.facePlaces |= i.service && (i.service->traits & kReadsFacePlaces);
         bindLobe(i);
         i.exponent = s.op == "specularstd" || world.rispecSpecular() ? shadeops::kRispecExponent : shadeops::kSpecularExponent;
         auto rowOf = [&](const char* name) {
@@ -435,12 +448,7 @@ BoundKernel bindKernel(std::shared_ptr<const rsl::CompiledKernel> k, bool mixed,
     }
     linkGathers(b, *k, world);
     b.plan = std::make_shared<shading::BatchPlan>(*k, mixed);
-    b.needs.footprints = b.plan->usesFootprint();
-    for (const SiteInfo& i : b.sites) {
-        b.needs.footprints |= i.rays && i.rays->base >= 0; // "samplebase" is a fraction of the footprint
-        b.needs.hitModes |= i.rays && (i.rays->set.mode != shading::HitMode::Default || i.rays->mode >= 0);
-        b.needs.records |= (i.trace && i.trace->records.call) || (i.occlusion && i.occlusion->records.call);
-    }
+    b.needs = needsOf(b);
     b.kernel = std::move(k);
     b.blocks = asksBlocks(b);
     return b;

@@ -49,6 +49,12 @@ bool givesMean(const scene::Light& source, const std::string& shader, bool path,
     return units != "radiance" && !path && !kRadiance.count(shader);
 }
 
+/// Whether a light says that nothing casts shadows of it, by the parameter of RIS.
+bool castsNone(const ShaderInstance& light) {
+    const auto i = light.parameters.numbers.find("enableShadows");
+    return i != light.parameters.numbers.end() && !i->second.empty() && i->second[0] == 0;
+}
+
 /// Reads Attribute "light" for a light with a kernel.
 void readLightAttributes(BoundLight& l, bool path, Diagnostics& d) {
     l.samples = std::clamp(
@@ -77,6 +83,16 @@ void warnOfOwnPoint(const ShaderInstance& light, Diagnostics& d) {
                                             "light \"" + light.name + "\": P is the position of the light, as it has no area",
                                             "Ps is the point being lit; --dialect pixie reads P so",
                                             {}});
+}
+
+/// Whether a light that rays of lobes may meet depends on what it lights, besides Ps. Without area N is the lit point's.
+bool readsLitPoint(const BoundKernel& k, bool area) {
+    const auto& blocks = k.kernel->facts().blocks;
+    if (!area && std::find(blocks.begin(), blocks.end(), rsl::kBlockSky) == blocks.end()) return false;
+    const auto& inputs = k.kernel->inputs();
+    return std::any_of(inputs.begin(), inputs.end(), [&](const rsl::ir::Input& i) {
+        return i.name == "Ns" || i.name == "Ngs" || i.name == "I" || (!area && i.name == "N");
+    });
 }
 
 /// Sets the kind of a light by its statement.
@@ -222,9 +238,11 @@ void MutableWorld::bindLights(Diagnostics& d, const std::function<uint32_t(const
         std::vector<std::string> blocks = l.kernel.kernel->facts().blocks;
         if (blocks.empty()) blocks = {rsl::kBlockOutside};
         bool area = source.area && emitters.count(int(li));
+        if (path && readsLitPoint(l.kernel, area)) l.asksSurface = lightsAsk_ = true;
+        l.shadowless = path && castsNone(*l.instance);
         if (area) {
-            std::vector<uint32_t> seen;
-            for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(visibility(*s));
+            std::vector<uint32_t> seen; // by what rays, besides samples of the light
+            for (const geometry::Shape* s : emitters[int(li)]) seen.push_back(l.shadowless ? 0 : visibility(*s));
             l.emitter = std::make_shared<Emitter>(emitters[int(li)], std::move(seen));
         }
         if (!area && readsOwnPoint(l.instance->program->shader())) warnOfOwnPoint(*l.instance, d);

@@ -18,7 +18,7 @@ namespace alpenglow::world {
 
 /// A photon stored on a surface after delta reflection and transmission only. Camera space.
 struct GuidePhoton {
-    Vec3 P;
+    Vec3 P;          ///< position
     Vec3 mirror;     ///< last mirror vertex
     int side = 0;    ///< SurfaceTree::sideOf() the normal on the side that it hit
     float power = 0; ///< luminance; sums over an emission to the flux that is stored
@@ -27,7 +27,8 @@ struct GuidePhoton {
 /// The guide of one pass. Immutable.
 class CausticGuide {
 public:
-    static constexpr int kMostCode = 6;
+    static constexpr int kMostCode = 6; ///< largest result of chanceOf()
+    /// What is known of caustic light at a place.
     struct Cell {
         int32_t lobes = 0;    ///< index in lobes_
         float irradiance = 0; ///< luminance of caustic light, approximate
@@ -65,6 +66,7 @@ public:
     /// Samples a direction from P. u: each in [0, 1).
     Vec3 draw(const Cell& c, const Vec3& P, Vec2 u) const { return lobes_[size_t(c.lobes)].draw(P, u); }
 
+    /// Numbers of cells, and of the lobes in them.
     size_t cells() const { return cells_.size(); }
     size_t lobes() const { return lobeCount_; }
 

@@ -118,10 +118,6 @@ std::shared_ptr<const CloudSite> cloudSite(const SiteInfo& i, const rsl::Compile
     }
     c->writes = i.kind != SiteKind::Texture3d && (c->computed || !c->name.empty());
     c->steady = i.text.count(rsl::kPairSteady) > 0;
-    if (c->writes) {
-        world.clouds().bakes = true;
-        world.clouds().centres |= c->centres >= 0;
-    }
     return c;
 }
 

@@ -7,22 +7,22 @@ namespace alpenglow::world {
 
 /// Argument rows, or -1.
 struct CloudSite {
-    std::string name;            ///< file name; "" if `computed`, or missing
-    bool computed = false;       ///< file name computed for each point, in row 0
-    bool writes = false;         ///< bake() or bake3d() with a file name; without one they do nothing
-    bool steady = false;         ///< writing calls: all points of a primitive reach the call, or none do
-    int point = -1, normal = -1; ///< bake3d(), texture3d()
-    int s = -1, t = -1;          ///< bake()
-    int du = -1, dv = -1;        ///< texture3d(): differences of P between samples
-    std::string space = "world";
-    int spaceRow = -1;
-    int radius = -1, scale = -1; ///< of the disk or the filter
-    int centres = -1, maxDepth = -1;
+    std::string name;                ///< file name; "" if `computed`, or missing
+    bool computed = false;           ///< file name computed for each point, in row 0
+    bool writes = false;             ///< bake() or bake3d() with a file name; without one they do nothing
+    bool steady = false;             ///< writing calls: all points of a primitive reach the call, or none do
+    int point = -1, normal = -1;     ///< bake3d(), texture3d()
+    int s = -1, t = -1;              ///< bake()
+    int du = -1, dv = -1;            ///< texture3d(): differences of P between samples
+    std::string space = "world";     ///< of P, N and the result
+    int spaceRow = -1;               ///< of a space computed at run time
+    int radius = -1, scale = -1;     ///< of the disk or the filter
+    int centres = -1, maxDepth = -1; ///< of parameters of these names
     /// An optional argument: a channel of the map and where its value lies in the call's rows.
     struct Part {
-        std::string name;
-        pointcloud::ChannelType type;
-        int row;
+        std::string name;             ///< of the channel
+        pointcloud::ChannelType type; ///< of the value
+        int row;                      ///< first row
     }; ///< row: of arguments; texture3d(): of results
     std::vector<Part> parts;
     pointcloud::BakeLayout layout; ///< unused by texture3d()

@@ -31,12 +31,6 @@ const pointcloud::CloudMap* CloudStore::find(const std::string& name, const Sour
     return at->second.get();
 }
 
-void CloudStore::noteLights(const BoundLight& first, std::span<const BoundLight* const> all) {
-    std::lock_guard lock(mutex_);
-    lightsRan.insert(&first);
-    lightsRan.insert(all.begin(), all.end());
-}
-
 void CloudStore::noteLookup(const pointcloud::CloudMap* map, bool found, const SourcePlace& place) {
     std::lock_guard lock(mutex_);
     const auto [at, fresh] = asked_.try_emplace(map, Asked{found, place});

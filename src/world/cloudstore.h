@@ -5,16 +5,14 @@
 #include "pointcloud/octree.h"
 #include "pointcloud/shear.h"
 #include "world/mapfiles.h"
-#include <set>
-#include <span>
 
 namespace alpenglow::world {
 
-struct BoundLight;
-
-/// The maps of one world. Lookups and baking are thread safe; setting up and writing are not.
+/// The maps of one world. Lookups and baking are thread safe; writing is not. What running kernels leave in it (bakes, notes of
+/// lookups) is read between passes only, so no picture depends on it; maps are the same whoever opens them.
 class CloudStore {
 public:
+    /// files: where names are looked up.
     CloudStore(MapFiles files, Diagnostics& d) : files_(std::move(files)), diagnostics_(d) {}
     /// The map of this name, read at first use. Returns null if it does not exist, which is reported once. Thread safe; the map
     /// lives as long as the store.
@@ -30,14 +28,7 @@ public:
     /// Maps in which no texture3d() lookup found anything, by name, each with its first call in order of file and line.
     std::vector<std::pair<std::string, SourcePlace>> foundNothing();
 
-    pointcloud::BakeLog baked;
-    /// Set while the world is built: a surface kernel bakes; one of its calls may request micropolygon centres.
-    bool bakes = false, centres = false;
-    /// Whether to record which lights run: a few points decide whether a primitive bakes, but only for lights that ran there.
-    bool notesLights = false;
-    /// Adds to lightsRan: one light, or all of a LightGroup.
-    void noteLights(const BoundLight& first, std::span<const BoundLight* const> all);
-    std::set<const BoundLight*> lightsRan;
+    pointcloud::BakeLog baked; ///< records of this frame
 
 private:
     std::optional<std::string> pathOf(const std::string& name, const SourcePlace&);

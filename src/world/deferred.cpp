@@ -26,7 +26,8 @@ double entry(const accel::Ray& r, const Bounds& b, double end) {
 
 } // namespace
 
-DeferredBounds::DeferredBounds(std::vector<Bound> bounds) : bounds_(std::move(bounds)) {
+DeferredBounds::DeferredBounds(std::vector<Bound> bounds, int most)
+    : bounds_(std::move(bounds)), most_(size_t(std::max(1, most))) {
     for (Bound& b : bounds_) { // contents have rounded coordinates
         for (int k = 0; k < 3; ++k) {
             const float more = 1e-5f * (std::fabs(b.box.lo[k]) + std::fabs(b.box.hi[k])) + 1e-30f;
@@ -77,7 +78,7 @@ bool DeferredBounds::intersects(const accel::Ray& r, double end) const {
             if (const double t = entry(r, bounds_[i].box, end); t >= 0) met.emplace_back(t, i);
     }
     if (met.empty()) return false;
-    const size_t asked = std::min(met.size(), size_t(std::max(1, most_)));
+    const size_t asked = std::min(met.size(), most_);
     std::partial_sort(met.begin(), met.begin() + std::ptrdiff_t(asked), met.end());
     for (size_t k = 0; k < asked; ++k) met_[met[k].second].store(1, std::memory_order_relaxed);
     return true;

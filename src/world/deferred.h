@@ -18,10 +18,10 @@ public:
 
         int number = 0; ///< scene::deferredNumber()
     };
-    explicit DeferredBounds(std::vector<Bound>);
-    /// Sets how many bounds along its way a ray records, nearest first. Call before tracing.
-    void askFor(int most) const { most_ = most; }
-    /// Whether a ray reaches a bound before `end`, in units of its direction; records these bounds. Thread safe.
+    /// most: bounds along its way that a ray records, nearest first; at least 1.
+    DeferredBounds(std::vector<Bound>, int most);
+    /// Whether a ray reaches a bound before `end`, in units of its direction; records these bounds. Thread safe: marks in met()
+    /// are only ever set, and no ray reads them.
     bool intersects(const accel::Ray&, double end) const;
     /// The recorded numbers, ascending.
     std::vector<int> met() const;
@@ -35,7 +35,7 @@ private:
     std::vector<Bound> bounds_; ///< in order of the leaves
     std::vector<Node> nodes_;
     std::unique_ptr<std::atomic<uint8_t>[]> met_;
-    mutable int most_ = 1;
+    const size_t most_;
 };
 
 } // namespace alpenglow::world

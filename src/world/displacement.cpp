@@ -105,7 +105,7 @@ void MutableWorld::displaceGrid(const SurfaceBinding& b, const geometry::Shape& 
         if (b.displacement && turnedOver(shape)) turnOver(p);
         points.push_back(p);
     }
-    evaluators_(*this, d, settings_.stop)->run(bound, &b, points, shader.view(), [&](const shading::Batch& batch) {
+    evaluators_(*this, d, settings_.stop, true)->run(bound, &b, points, shader.view(), [&](const shading::Batch& batch) {
         const int out = batch.output("P");
         for (size_t i = 0; out >= 0 && i < grid.P.size(); ++i) grid.P[i] = batch.color(out, int(i));
     });

@@ -8,6 +8,7 @@
 
 namespace alpenglow::world {
 
+/// The groups of one shape.
 class FacetGroups {
 public:
     /// Whether a shape has facets to be grouped: a mesh, or a diced shape, that does not move. Call after dicing.

@@ -15,7 +15,8 @@ class FlippedNormals {
 public:
     /// For one call on one shape: whether any normal faced the viewer, any faced away, and any ray was unoccluded.
     struct Tally {
-        std::atomic<bool> facing = false, away = false, open = false;
+        std::atomic<bool> facing = false, away = false, open = false; ///< what was seen so far
+        /// Sets a flag; does not write if it is set.
         static void set(std::atomic<bool>& flag) {
             if (!flag.load(std::memory_order_relaxed)) flag.store(true, std::memory_order_relaxed);
         }

@@ -9,6 +9,7 @@ namespace alpenglow::world {
 
 /// One gather(): what its rays ask of what they hit, and where the answers go.
 struct GatherSite {
+    /// Where rays go: into the scene, nowhere (samplepattern), or toward samples of an environment map.
     enum class Category : uint8_t { Rays, Directions, Sky };
     /// The source of an output's value.
     enum class Of : uint8_t {
@@ -32,21 +33,21 @@ struct GatherSite {
         int32_t id = 0;                     ///< name without prefix, interned
         int at = 0, rows = 1, elements = 0; ///< elements: 0 if not an array
         bool open = false;
-        rsl::ir::Kind kind = rsl::ir::Kind::Float;
+        rsl::ir::Kind kind = rsl::ir::Kind::Float; ///< of a component
     };
-    int number = 0; ///< index of the statement in its kernel
-    Category category = Category::Rays;
-    bool cosine = false; ///< "distribution" "cosine"; else uniform
-    int threshold = -1;  ///< row of "othreshold"
-    std::vector<Output> outputs;
+    int number = 0;                     ///< index of the statement in its kernel
+    Category category = Category::Rays; ///< by the statement's category
+    bool cosine = false;                ///< "distribution" "cosine"; else uniform
+    int threshold = -1;                 ///< row of "othreshold"
+    std::vector<Output> outputs;        ///< in the order of the rows
     /// Values sent to parameters of shaders at hits: argument rows.
     struct Sent {
         rsl::PairName::To to;
-        std::string parameter;
-        rsl::ir::Kind kind; ///< of an element
-        int row;            ///< of the first element
-        int lengthRow;      ///< of the number of elements; -1: no array
-        int elements;       ///< at most
+        std::string parameter; ///< name of the parameter
+        rsl::ir::Kind kind;    ///< of an element
+        int row;               ///< of the first element
+        int lengthRow;         ///< of the number of elements; -1: no array
+        int elements;          ///< at most
     };
     std::vector<Sent> sent;
     /// Whether values are sent to shaders of that kind.

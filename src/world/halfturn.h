@@ -6,6 +6,7 @@
 
 namespace alpenglow::world {
 
+/// The axis of one shape.
 class HalfTurn {
 public:
     /// Whether samples of a shape can be turned: a complete quadric that rays hit exactly and that does not move. Complete

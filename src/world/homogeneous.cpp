@@ -27,7 +27,7 @@ bool sameEverywhere(const rsl::CompiledKernel& k) {
 
 } // namespace
 
-Color Homogeneous::left(float way) const {
+Color Homogeneous::transmittance(float way) const {
     const Color sigma = extinction();
     Color t(float(exact::exp(-double(sigma.x) * way)));
     if (sigma.y != sigma.x) t.y = float(exact::exp(-double(sigma.y) * way));

@@ -19,7 +19,7 @@ bool WorldImpl::runImager(int count, const float* x, const float* y, float* r, f
     const InstanceRef& i = imager_.shader;
     const BoundKernel& k = imager_.kernel;
     if (!i || !k || k.kernel->facts().suspends) return false;
-    const std::unique_ptr<Evaluator> evaluator = evaluators_(*this, d, stop);
+    const std::unique_ptr<Evaluator> evaluator = evaluators_(*this, d, stop, false);
     // The output alpha is what the shader writes; a shader that only makes pixels opaque sets alpha as well (methods of classes
     // have no alpha).
     const auto& writes = k.kernel->facts().writes;

@@ -28,7 +28,7 @@ public:
     const uint8_t* find(const class WorldImpl&, const std::string& wanted, const std::string& unwanted) const;
 
 private:
-    mutable std::mutex mutex_;
+    mutable std::mutex mutex_; ///< guards kept_, a cache: a set is the same whoever asks first
     mutable std::map<std::string, std::vector<uint8_t>> kept_;
 };
 
@@ -79,6 +79,7 @@ public:
         return shutter_.opens() ? s.velocity(p) / float(shutter_.close - shutter_.open) : Vec3(0.f);
     }
     float clipNear() const { return clipNear_; } ///< of the request Clipping, for depth()
+    /// Camera space.
     float clipFar() const { return clipFar_; }
     /// A point and a normal each; camera rays see nothing on the side of the normal.
     const std::vector<std::pair<Vec3d, Vec3d>>& clippingPlanes() const { return clippingPlanes_; }
@@ -103,6 +104,7 @@ public:
     bool moves() const { return moves_; }               ///< some shape moves
     bool fades() const { return fades_; }               ///< some shape fades between levels of detail
     bool traceSubsets() const { return traceSubsets_; } ///< some shape has Attribute "grouping" "tracesubset"
+    /// Of rays by group.
     const ShapeSubsets& subsets() const { return subsets_; }
     void goOn(accel::Ray&, const accel::Hit&) const; ///< continues a ray behind its hit
 
@@ -110,6 +112,7 @@ public:
     const std::vector<int>& bindingOf() const { return bindingOf_; } ///< by shape: index in bindings()
     const std::vector<SurfaceBinding>& bindings() const { return bindings_; }
     int groups() const { return groups_; } ///< number of distinct SurfaceBinding::group
+    /// Of the shader of primitives without one.
     const BoundKernel& primitiveHit() const {
         return primitiveHit_;
     } ///< shows primitives by Color and Opacity; set only if rays can request it
@@ -122,8 +125,8 @@ public:
     /// Otherwise, by shape, subsets for rays without a "hitmode": shapes that block all light, and the others with their bounding
     /// box.
     struct ByOpacity {
-        std::vector<uint8_t> opaque, clear;
-        geometry::Bounds clearBounds;
+        std::vector<uint8_t> opaque, clear; ///< for RaySet::only
+        geometry::Bounds clearBounds;       ///< camera space
         /// If few, the other shapes alone, with the index of each in this structure; else null.
         std::unique_ptr<accel::Accel> few;
         std::vector<uint32_t> numbers;
@@ -135,6 +138,7 @@ public:
         std::unique_ptr<accel::Accel> lobesOnly; ///< shapes that shadow rays pass (Attribute "visibility"); null: none
         std::vector<uint8_t> shadowsOnly[2]; ///< by shape: shadow rays alone hit it; of diffuse and of specular rays; empty: none
         bool opacity = false;                ///< some Opacity::differs
+        /// Both see the same otherwise.
         bool differs() const { return lobesOnly || opacity || !shadowsOnly[0].empty() || !shadowsOnly[1].empty(); }
     };
     const ShadowVisibility& shadowVisibility() const { return shadowVisibility_; }
@@ -143,6 +147,7 @@ public:
     const std::vector<Medium>& media() const { return media_; } ///< of Interior and Exterior
     const shading::Media& eye() const { return eye_; }          ///< media at the eye
     bool scatters() const { return scatters_; }                 ///< some of media() scatter
+    /// Whether volumes of different priority overlap, so that surfaces may not count.
     bool mediaOverrule() const {
         return mediaOverrule_;
     } ///< media differ in priority: inside some, surfaces are no boundaries and stop no ray
@@ -175,7 +180,7 @@ public:
         std::vector<int> sampled;
         LightChooser chooser; ///< over `sampled`; empty if every light is sampled at every vertex
         LightChooser deeper;  ///< for later vertices of a path, where fewer are sampled; empty if `chooser` is
-        bool ofAll = false;
+        bool ofAll = false;   ///< it has all lights of the frame
     };
     const std::vector<LightList>& lightLists() const { return lightLists_; } ///< by SurfaceBinding::lightList
     /// The sampled lights of a list; with `ofAll` those of all lists.
@@ -195,18 +200,20 @@ public:
     // Outputs
     const std::vector<rsl::OutputName>& wanted() const { return wanted_; }    ///< Settings::outputs
     const std::vector<int>& widthsOfOutputs() const { return outputWidths_; } ///< outputWidths(), without a copy
+    /// In the order of SurfaceBinding::lightOutputs.
     const std::vector<LightOutputPlace>& lightOutputs() const { return lightOutputs_; }
 
     // Services
     ServiceTable services() const { return services_; }
-    bool rispecSpecular() const { return rispecSpecular_; } ///< specular() uses RISpec's exponent (shadeops/specular.h)
-    bool built() const { return built_; } ///< false while kernels run for the build itself: what they find is not kept
+    bool rispecSpecular() const { return rispecSpecular_; }    ///< specular() uses RISpec's exponent (shadeops/specular.h)
     Diagnostics& diagnostics() const { return *diagnostics_; } ///< of the build; thread safe
+    /// Thread safe, so that const users may fill the caches in them.
     texture::TextureSystem& textures() const { return *textures_; }
     const texture::IrradianceTables& irradiance() const { return irradiance_; }
     const texture::SkyDirectionTables& skyMaps() const { return skyMaps_; }
     CloudStore& clouds() const { return *clouds_; } ///< point clouds, and baked data; thread safe
     PtexStore& ptex() const { return *ptex_; }      ///< Ptex files; thread safe
+    /// Thread safe; const users write messages and records.
     rsl::PrintLog& prints() const { return prints_; }
     FlippedNormals& turnedAway() const { return turnedAway_; }
     LightRecords& records() const { return records_; }
@@ -221,7 +228,6 @@ protected:
     Settings settings_;
     ServiceTable services_; ///< of services/, above this folder
     bool rispecSpecular_ = false;
-    bool built_ = false;
     Facts facts_;
     Diagnostics* diagnostics_ = nullptr;
 

@@ -7,9 +7,9 @@ namespace alpenglow::world {
 
 /// Numbers or strings: one, or an array.
 struct Information {
-    std::vector<float> numbers;
-    std::vector<std::string> texts;
-    bool isText = false;
+    std::vector<float> numbers;     ///< of numbers
+    std::vector<std::string> texts; ///< of texts
+    bool isText = false;            ///< `texts` counts
 };
 
 /// An attribute (3Delight manual, Table 6.20), "user:..." or any "class:name" of the scene. `point` and `binding` may be null;

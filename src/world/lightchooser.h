@@ -14,6 +14,7 @@ namespace alpenglow::world {
 struct Cone {
     Vec3 axis;
     float cosine = -1; ///< cosine of the angle; -1: all directions
+    /// Every direction is in it.
     bool all() const { return !(cosine > -1); }
     /// The opposite cone.
     Cone opposite() const { return {-axis, cosine}; }
@@ -24,8 +25,8 @@ Cone around(const Cone&, const Cone&);
 /// A light for the chooser. power: luminance at distance 1, or anywhere for lights without a position (Distant). Lengths in
 /// current space.
 struct LightBound {
-    Vec3 centre;
-    float radius = 0;
+    Vec3 centre;      ///< centre of a ball around it
+    float radius = 0; ///< of the ball
     float power = 0;
     bool everywhere = false; ///< no falloff with distance
     Cone front = {};         ///< light leaves at less than a right angle to one of these directions
@@ -52,7 +53,7 @@ public:
     LightChooser(std::span<const LightBound> lights, int wanted);
     bool empty() const { return leafOf_.empty(); }
 
-    using Chosen = std::vector<std::pair<int, float>>;
+    using Chosen = std::vector<std::pair<int, float>>; ///< indices of lights, and the probability of each
     /// Chooses lights for a point, each at most once, with their probabilities in (0, 1], in any order. `u`: random number in [0,
     /// 1).
     void choose(const Vec3& at, float u, Chosen& chosen) const;

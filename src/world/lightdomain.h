@@ -9,8 +9,8 @@ namespace alpenglow::world {
 /// The bins of one light. Directions are those from the lit point.
 class LightDomain {
 public:
-    static constexpr int kMostBins = 384;
-    LightDomain() = default; ///< of a sky
+    static constexpr int kMostBins = 384; ///< most bins of a domain
+    LightDomain() = default;              ///< of a sky
     /// Of an emitter whose triangles lie in one plane: squares of the smallest rectangle around it that is parallel to one of its
     /// edges.
     explicit LightDomain(const FlatEmitter&);

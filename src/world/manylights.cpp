@@ -9,7 +9,7 @@ namespace {
 /// Whether the light's kernel needs only its parameters and the point, so that lights may share a call.
 bool sharesCalls(const BoundLight& l, bool media) {
     if (!l.kernel || l.kernel.kernel->facts().suspends || l.asksSurface || l.channels || l.sentCl >= 0) return false;
-    if (l.kind == LightKind::Area && (l.hazy || media)) return false;
+    if (l.kind == LightKind::Area && (l.inAtmosphere || media)) return false;
     return std::all_of(l.kernel.sites.begin(), l.kernel.sites.end(), [](const SiteInfo& s) {
         return s.kind == SiteKind::Texture || s.kind == SiteKind::Environment || s.kind == SiteKind::Shadow ||
                s.kind == SiteKind::TextureInfo;

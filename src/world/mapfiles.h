@@ -8,7 +8,7 @@ namespace alpenglow::world {
 /// Where maps are looked up.
 struct MapFiles {
     std::vector<std::string> folders; ///< searched after the current folder; from Option "searchpath" "texture"
-    ReadPolicy read;
+    ReadPolicy read;                  ///< where names may lead
 };
 
 /// Texts for messages about a kind of map.

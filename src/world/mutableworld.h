@@ -124,7 +124,6 @@ public:
     using WorldImpl::allSampled_;
     using WorldImpl::bindingOf_;
     using WorldImpl::bindings_;
-    using WorldImpl::built_;
     using WorldImpl::byOpacity_;
     using WorldImpl::cameraToWorld_;
     using WorldImpl::clipFar_;
@@ -172,7 +171,7 @@ public:
     using WorldImpl::wanted_;
     using WorldImpl::worldToCamera_;
 
-    std::shared_ptr<rsl::ShaderCompiler> compiler_;
+    std::shared_ptr<rsl::ShaderCompiler> compiler_;             ///< of all shaders
     std::map<const scene::ShaderCall*, InstanceRef> coShaders_; ///< one instance for each request
     std::vector<std::string> lightMessages_; ///< parameters of surfaces that lights and atmospheres query, sorted
     /// Outputs of displacement shaders that lights query; "": names computed at run time.

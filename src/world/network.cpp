@@ -53,9 +53,9 @@ static InstanceRef expression(MutableWorld& world, const scene::ShaderCall& call
     for (const scene::Param& p : rest.params) add(p.name, p.numbers.size() == 3);
     for (const scene::Connection& c : rest.connections) add(c.parameter, true);
     const auto rsl = rsl::front::rslFromSeExpr(text, variables, call.place, d);
-    Diagnostics said;
-    auto program = rsl ? world.compiler_->loadText(*rsl, "SeExpr", said) : nullptr;
-    for (Diagnostic m : said.all())
+    Diagnostics reported;
+    auto program = rsl ? world.compiler_->loadText(*rsl, "SeExpr", reported) : nullptr;
+    for (Diagnostic m : reported.all())
         if (m.severity >= Severity::Error) m.place = call.place, d.report(std::move(m));
     if (!program) return nullptr;
     auto i = std::make_shared<ShaderInstance>();
@@ -70,9 +70,9 @@ static InstanceRef expression(MutableWorld& world, const scene::ShaderCall& call
 /// The instance of a pattern; null, reported once, if there is no shader of that name.
 static InstanceRef pattern(MutableWorld& world, const scene::ShaderCall& call, Diagnostics& d) {
     if (call.name == "PxrSeExpr") return expression(world, call, d);
-    Diagnostics said;
-    InstanceRef i = world.instance(call, rsl::ShaderKind::Surface, said, true);
-    for (const Diagnostic& m : said.all()) {
+    Diagnostics reported;
+    InstanceRef i = world.instance(call, rsl::ShaderKind::Surface, reported, true);
+    for (const Diagnostic& m : reported.all()) {
         if (i || m.code != Rie::NoShader) {
             d.report(m);
             continue;

@@ -7,7 +7,7 @@
 
 namespace alpenglow::world {
 
-inline constexpr const char kObjectBox[] = "geometry:boundingbox";
+inline constexpr const char kObjectBox[] = "geometry:boundingbox"; ///< attribute() answers a primitive's box under this name
 
 /// xmin xmax ymin ymax zmin zmax in object space, as in RiBound: of the primitive's points at all its times, before displacement;
 /// quadrics with a full sweep. Returns nothing for primitives without points and box (blobbies).

@@ -1,6 +1,5 @@
 // Whether a frame traces camera rays only. Then geometry that they cannot reach may be left out.
 #include "scene/scene.h"
-#include "world/cloudstore.h"
 #include "world/mutableworld.h"
 #include "world/service.h"
 
@@ -34,8 +33,8 @@ bool sendsNothing(const Opacity& o) { return sendsNothing(o.kernel); }
 } // namespace
 
 bool MutableWorld::onlyCameraRays() const {
-    if (settings_.hider == Hider::Path || !media_.empty() || deferred_ || globalMaps_ || (clouds_ && clouds_->bakes) ||
-        needs_.records || settings_.bsdfOnly || settings_.lightOnly)
+    if (settings_.hider == Hider::Path || !media_.empty() || deferred_ || globalMaps_ || needs_.bakes || needs_.records ||
+        settings_.bsdfOnly || settings_.lightOnly)
         return false;
     for (const BoundLight& l : lights_) {
         // An area light with a mean needs no rays; any other with an extent does.

@@ -26,8 +26,8 @@ void MutableWorld::sortByOpacity(std::span<const uint32_t> visibility) {
         byOpacity_.numbers.push_back(uint32_t(i));
     }
     if (triangles > kFew || fades_ || accel_->hasSolids() || deferred_) return;
-    Diagnostics said; // messages come from the complete shader
-    byOpacity_.few = std::make_unique<accel::Accel>(shapes, seen, said);
+    Diagnostics reported; // messages come from the complete shader
+    byOpacity_.few = std::make_unique<accel::Accel>(shapes, seen, reported);
     if (!byOpacity_.few->takesRows()) byOpacity_.few.reset();
 }
 
@@ -52,8 +52,8 @@ void MutableWorld::findShadowVisibility(std::span<const uint32_t> visibility) {
         }
     }
     if (shapes.empty() || accel_->hasSolids() || deferred_) return;
-    Diagnostics said; // the tree of all shapes has reported
-    shadowVisibility_.lobesOnly = std::make_unique<accel::Accel>(shapes, seen, said, true);
+    Diagnostics reported; // the tree of all shapes has reported
+    shadowVisibility_.lobesOnly = std::make_unique<accel::Accel>(shapes, seen, reported, true);
 }
 
 void WorldImpl::goOn(accel::Ray& ray, const accel::Hit& h) const {

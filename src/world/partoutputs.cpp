@@ -30,7 +30,7 @@ std::vector<int> sameCalls(const BoundKernel& of, const BoundKernel& in) {
 
 void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Names& varying) {
     b.lightOutputs.clear();
-    b.aside.clear();
+    b.inLightOutputs.clear();
     const std::vector<rsl::OutputName>& wanted = world_.wanted_;
     const auto asked = [&](const std::string& name) {
         return std::find(wanted.begin(), wanted.end(), rsl::OutputName::parse(name)) != wanted.end();
@@ -40,7 +40,7 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
     Names plain = outputs, parameters{};
     for (const std::string& name : outputs)
         if (rsl::OutputName::parse(name).parameter) parameters.push_back(name); // lights query it
-    std::vector<char> aside(wanted.size(), 0);
+    std::vector<char> inLightOutputs(wanted.size(), 0);
     for (size_t k = 0; k < wanted.size(); ++k) {
         bool light = false, good = true;
         int component = 0;
@@ -62,7 +62,7 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
             component += size;
         }
         if (!light || !good || wanted[k] == rsl::OutputName::of("Ci") || wanted[k] == rsl::OutputName::of("Oi")) continue;
-        aside[k] = 1;
+        inLightOutputs[k] = 1;
         std::erase(plain, wanted[k].text());
         for (size_t i = 0; i < found.size(); ++i) {
             const auto same = [&](const LightOutputPlace& p) {
@@ -79,7 +79,7 @@ void SurfaceBinder::partLightOutputs(SurfaceBinding& b, Names& outputs, const Na
         const BoundKernel alone = world_.kernel(*b.surface, plain, varying, false, path_, diagnostics_);
         if (alone && alone.kernel->facts().suspends) return b.lightOutputs.clear();
     }
-    b.aside = std::move(aside);
+    b.inLightOutputs = std::move(inLightOutputs);
     outputs = std::move(plain);
 }
 

@@ -29,8 +29,8 @@ void setPhotonMap(const World&, const std::string& name, std::vector<photonmap::
 bool mayHaveCaustics(const World&);
 /// Size of the caustic guide of a world (world/causticguide.h).
 struct GuideFigures {
-    uint64_t photons = 0; ///< stored caustic photons
-    uint64_t cells = 0, lobes = 0;
+    uint64_t photons = 0;          ///< stored caustic photons
+    uint64_t cells = 0, lobes = 0; ///< sizes of the guide
 };
 /// Builds the caustic guide from photons of mirrors and clear glass; paths use it from now on. emitted: luminance of all emitted
 /// light; brightness: mean luminance of the picture. No guide is built if caustics contribute little. Call while no thread

@@ -12,6 +12,7 @@
 namespace alpenglow::world {
 
 class CausticGuide;
+class CausticSeeds;
 class LightGuide;
 
 /// The photon maps of one world. Looked up by any thread; changed between passes only.
@@ -48,6 +49,8 @@ public:
     std::vector<uint8_t> lightsOfPasses;
     /// Null: paths find caustics by chance only. Changes only while no thread traces.
     std::shared_ptr<const CausticGuide> guide;
+    /// Null: no light of point, spot and distant lights comes by mirrors and glass. Changes only while no thread traces.
+    std::shared_ptr<const CausticSeeds> seeds;
     /// By light: guides of its samples (world/lightguide.h); empty: no light has one. Changes only while no thread traces.
     std::vector<std::shared_ptr<const LightGuide>> lightGuides;
     /// Light samples that would bring less luminance than this to a pixel are subject to Russian roulette (ShadowRays); 0: none.

@@ -6,7 +6,7 @@ namespace alpenglow::world {
 namespace {
 
 uint32_t needsOf(const BoundLight& l) {
-    if (!l.kernel || l.hazy) return geometry::kNeedAll; // a volume shader also runs there
+    if (!l.kernel || l.inAtmosphere) return geometry::kNeedAll; // a volume shader also runs there
     uint32_t needs = l.kernel.plan->needs();
     for (const auto& [strings, k] : l.variants) needs |= k.plan->needs();
     return needs | (usesFootprint(l) ? uint32_t(geometry::kNeedPartials) : 0);

@@ -9,10 +9,6 @@ namespace {
 const WorldImpl* inside(const World& w) { return dynamic_cast<const WorldImpl*>(&w); }
 } // namespace
 
-void askForProcedurals(const World& w, int most) {
-    if (hasDeferred(w)) inside(w)->deferred()->askFor(most);
-}
-
 std::vector<int> procedurals(const World& w) { return hasDeferred(w) ? inside(w)->deferred()->met() : std::vector<int>(); }
 
 bool hasDeferred(const World& w) { return inside(w) && inside(w)->deferred(); }

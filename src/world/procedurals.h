@@ -6,8 +6,6 @@
 
 namespace alpenglow::world {
 
-/// Sets how many bounds along its way a ray records, at most (initially 1). Call before tracing.
-void askForProcedurals(const World&, int most);
 /// Numbers of the procedurals that rays reached. Results of these rays are undefined; trace them again in a world that has the
 /// contents.
 std::vector<int> procedurals(const World&);

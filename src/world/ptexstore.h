@@ -7,8 +7,10 @@
 
 namespace alpenglow::world {
 
+/// The Ptex files of a frame. Thread safe.
 class PtexStore {
 public:
+    /// files: where names are looked up.
     PtexStore(MapFiles files, Diagnostics& d);
     /// The file of a name, opened at first use. Returns null if it does not exist, which is reported once. Thread safe; it lives
     /// as long as the store.

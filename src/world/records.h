@@ -35,6 +35,7 @@ struct LightRecord {
               const std::vector<float>& way, float pixel, float most);
 };
 
+/// The records of a frame. Thread safe; lookups do not see records of the current pass.
 class LightRecords {
 public:
     /// Interpolates records at P with unit normal N. Returns false if too few are near. Thread safe, except against keep().

@@ -12,6 +12,7 @@ class ServiceCall;
 
 namespace alpenglow::world {
 
+/// What a service needs, as bits.
 enum ServiceTrait : unsigned {
     kWithoutScene = 1,   ///< also answers where there is no scene (alpenglow eval and shade); otherwise the result there is 0
     kSendsNothing = 2,   ///< needs neither rays nor points of complete surfaces
@@ -26,9 +27,9 @@ struct ServiceSite {
 
 /// The descriptor of a service.
 struct Service {
-    std::string_view shadeop;
-    SiteKind kind;   ///< SiteKind::Service unless other stages ask for it
-    unsigned traits; ///< ServiceTrait
+    std::string_view shadeop; ///< name of the shadeop that it answers
+    SiteKind kind;            ///< SiteKind::Service unless other stages ask for it
+    unsigned traits;          ///< ServiceTrait
     /// Answers a call for the points of its mask. Runs on several threads, takes no lock, compares no strings.
     void (*answer)(services::Services&, const services::ServiceCall&);
     /// Resolves a call site when its kernel is bound; null: there is nothing to resolve.

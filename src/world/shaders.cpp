@@ -161,9 +161,9 @@ void MutableWorld::takeValues(ShaderInstance& of, const std::vector<rsl::Paramet
 
 InstanceRef MutableWorld::instance(const scene::ShaderCall& call, rsl::ShaderKind kind, Diagnostics& d, bool anyKind) {
     double begin = compileClock();
-    Diagnostics said; // the compiler knows no scene: messages without a place get that of the call
-    auto program = compiler_->load(call.name, settings_.shaderPaths, said);
-    for (Diagnostic m : said.all()) {
+    Diagnostics reported; // the compiler knows no scene: messages without a place get that of the call
+    auto program = compiler_->load(call.name, settings_.shaderPaths, reported);
+    for (Diagnostic m : reported.all()) {
         if (m.place.file.empty()) {
             m.place = call.place;
             if (m.hint.empty()) m.hint = nearShader(call.name, settings_.shaderPaths);
@@ -319,9 +319,9 @@ InstanceRef MutableWorld::withCoShaders(const InstanceRef& shader, const std::ma
     auto copy = std::make_shared<ShaderInstance>(*shader);
     dropMissingHandles(*shader, copy->parameters.strings, called, d);
     for (const auto& [handle, call] : called) {
-        Diagnostics said; // messages about a light were reported when it was bound
+        Diagnostics reported; // messages about a light were reported when it was bound
         const bool light = !coshaders.count(handle);
-        const InstanceRef& i = instanceOf(call, light ? said : d);
+        const InstanceRef& i = instanceOf(call, light ? reported : d);
         if (!i) continue;
         rsl::CoShader c = rsl::ShaderCompiler::coShader(i->program, handle);
         c.light = light;
@@ -391,7 +391,9 @@ BoundKernel MutableWorld::kernelWithoutRays(const ShaderInstance& i, const std::
     ++facts_.kernels;
     facts_.cacheHits += k->fromCache();
     (k->facts().suspends ? facts_.suspending : facts_.affine)++;
-    return bindKernel(std::move(k), mixed, path, *this);
+    BoundKernel bound = bindKernel(std::move(k), mixed, path, *this);
+    needs_.bakes |= bound.needs.bakes, needs_.bakesCentres |= bound.needs.bakesCentres; // an imager may bake, too
+    return bound;
 }
 
 } // namespace alpenglow::world

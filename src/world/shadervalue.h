@@ -8,11 +8,12 @@ namespace alpenglow::world {
 struct ShaderValue {
     /// Type of an element; none: numbers or strings for a variable of that size.
     std::optional<rsl::ir::Kind> kind;
-    int elements = 0;     ///< 0: not an array. Unused if the kind is unknown
-    bool varying = false; ///< does not fit a uniform variable
-    std::vector<float> numbers;
-    std::vector<std::string> texts;
+    int elements = 0;               ///< 0: not an array. Unused if the kind is unknown
+    bool varying = false;           ///< does not fit a uniform variable
+    std::vector<float> numbers;     ///< element after element
+    std::vector<std::string> texts; ///< of strings
     ShaderValue() = default;
+    /// Uniform.
     explicit ShaderValue(const Information&);
     /// For a type of the shading language; no value yet.
     explicit ShaderValue(const shadeops::Type& type, int length) : kind(kindOf(type.base)), elements(type.array ? length : 0) {}

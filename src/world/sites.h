@@ -33,20 +33,20 @@ inline uint32_t visibilityBit(RayType t) {
 
 /// Ray parameters of a call (3Delight manual, table 6.10). Argument rows, or -1.
 struct RaySite {
-    int bias = -1, maxDistance = -1, maxHit = -1, cone = -1, samples = -1, base = -1;
+    int bias = -1, maxDistance = -1, maxHit = -1, cone = -1, samples = -1, base = -1; ///< rows of these parameters
     int subset = -1, exclude = -1, sides = -1, mode = -1, label = -1,
-        type = -1; ///< strings computed at run time
-    std::string subsetText, excludeText;
+        type = -1;                       ///< strings computed at run time
+    std::string subsetText, excludeText; ///< "subset" and "excludesubset", if known in advance
     int32_t subsetId = 0, excludeId = 0; ///< interned
     shading::RaySet set;                 ///< the part known in advance
-    RayType rays = RayType::Specular;
-    bool fixed = false;     ///< set, label and type are known in advance
-    bool saysSides = false; ///< "hitsides" is given
+    RayType rays = RayType::Specular;    ///< type of the rays
+    bool fixed = false;                  ///< set, label and type are known in advance
+    bool saysSides = false;              ///< "hitsides" is given
 };
 
 /// "falloff" and "falloffmode" of a hemisphere call: rows, or -1.
 struct FadeSite {
-    int strength = -1, mode = -1;
+    int strength = -1, mode = -1; ///< rows
 };
 
 /// Irradiance caching (world/records.h) of a call. Rows, or -1.
@@ -70,21 +70,23 @@ struct TraceSite {
     bool apart = false;                   ///< rsl::kPairApart: excludes lights; for diffuse(): includes lights only
     bool axis = false;                    ///< has "axis": mean over directions on its side only
     bool openness = false;                ///< queries occlusion of its rays: every sample sends one
-    FadeSite fade;
-    RecordSite records;
+    FadeSite fade;                        ///< "falloff"
+    RecordSite records;                   ///< "maxvariation" and its like
 };
 
 /// Parameters of occlusion() beyond TraceSite. Rows, or -1.
 struct OcclusionSite {
     int cone = -1, axis = -1, adaptive = -1, least = -1; ///< least: "minsamples"
-    FadeSite fade;
-    RecordSite records;
-    bool uniform = false; ///< "distribution" "uniform"
+    FadeSite fade;                                       ///< "falloff"
+    RecordSite records;                                  ///< "maxvariation" and its like
+    bool uniform = false;                                ///< "distribution" "uniform"
 };
 /// Parameters of subsurface(). Rows, or -1: Attribute "subsurface" applies.
 struct SubsurfaceSite {
+    /// Rows of these parameters.
     int samples = -1, scattering = -1, absorption = -1, path = -1, diffusePath = -1, reflectance = -1, index = -1, scale = -1,
         anisotropy = -1, point = -1, normal = -1;
+    /// How light spreads below the surface.
     enum class Model : uint8_t { Walk, Dipole, BetterDipole } model = Model::Walk;
     std::string group; ///< "": from the attribute
 };
@@ -96,11 +98,11 @@ struct ServiceSite; // world/service.h
 
 /// Parameters of a photonmap() or caustic(). Rows, or -1.
 struct PhotonSite {
-    std::string name;      ///< name of the map; "" if `computed`, or missing
-    bool computed = false; ///< name computed for each point, in row 0
-    bool caustic = false;  ///< the caustic map of the surface's attributes
-    bool radiance = false;
-    int point = -1, normal = -1, estimator = -1, minBounces = -1, lookup = -1;
+    std::string name;                                                          ///< name of the map; "" if `computed`, or missing
+    bool computed = false;                                                     ///< name computed for each point, in row 0
+    bool caustic = false;                                                      ///< the caustic map of the surface's attributes
+    bool radiance = false;                                                     ///< of radiance; else of irradiance
+    int point = -1, normal = -1, estimator = -1, minBounces = -1, lookup = -1; ///< rows
 };
 
 /// Parameters of a texture() or environment(). Argument rows, or -1.
@@ -108,6 +110,7 @@ struct TextureSite {
     std::string name;               ///< name of the map; "" if `computed`, or missing
     bool computed = false;          ///< name computed for each point, in row 0
     texture::LookupOptions options; ///< those equal for all points
+    /// Rows of these parameters.
     int filter = -1, channel = -1, fill = -1, width = -1, swidth = -1, twidth = -1, blur = -1, sblur = -1, tblur = -1;
     /// shadow(): -1 if not given, then the frame's options apply; `source`: corners of an area light.
     int samples = -1, bias = -1, bias0 = -1, bias1 = -1, gapbias = -1, source[4] = {-1, -1, -1, -1};
@@ -119,6 +122,7 @@ struct TextureSite {
     template <class Place> texture::Handle map(const class WorldImpl&, Place&& place) const;
 
 private:
+    // A cache of map(): whichever thread opens the map, the handle is the same.
     mutable std::atomic<texture::Handle> map_{nullptr};
     mutable std::atomic<bool> opened_{false};
 };
@@ -170,18 +174,18 @@ enum class SiteKind : uint8_t {
     Other
 };
 struct SiteInfo {
-    SiteKind kind = SiteKind::Unknown;
-    const rsl::ir::Site* site = nullptr;
+    SiteKind kind = SiteKind::Unknown;       ///< what kind of call it is
+    const rsl::ir::Site* site = nullptr;     ///< as it was compiled; outlives this
     std::vector<int> rows;                   ///< first row of each argument in `in` (after the weight for Emit)
     std::map<std::string, int> named;        ///< row of an optional pair's value
     std::map<std::string, std::string> text; ///< constant string pairs
     std::map<std::string, int> resultRows;   ///< "" and output names -> first row of `out`
-    int resultRowCount = 0;
+    int resultRowCount = 0;                  ///< number of rows
     /// For requests, entries of `resultRows`; -1: not requested.
     struct Results {
-        int value = -1, distance = -1, transmission = -1, normal = -1;
-        int open = -1; ///< "environmentdir", not normalised
-        int environment = -1, unshadowedEnvironment = -1, areaLight = -1, unshadowedAreaLight = -1;
+        int value = -1, distance = -1, transmission = -1, normal = -1; ///< first rows
+        int open = -1;                                                 ///< "environmentdir", not normalised
+        int environment = -1, unshadowedEnvironment = -1, areaLight = -1, unshadowedAreaLight = -1; ///< first rows
     } results;
     bool givesDistance() const { return kind == SiteKind::Trace && site->resultType.base == shadeops::Base::Float; }
     const LobeKind* lobe = nullptr; ///< Trace: the distribution; the lobe of a lighting shadeop
@@ -207,8 +211,8 @@ struct SiteInfo {
     int rowCategory = -1;                             ///< LightSetup: row of "category" in the setup's arguments
     /// LightSetup: values for parameters of lights, as argument rows; element: index in the array that is sent, or -1.
     struct Sent {
-        std::string parameter;
-        int element, row, size;
+        std::string parameter;  ///< name of the parameter
+        int element, row, size; ///< its first row, and their number
     };
     std::vector<Sent> sent;
     /// The same for strings, and all of them as a key of BoundLight::variants with its hash: "name\1value\2" for each; "" and 0:
@@ -226,8 +230,8 @@ struct SiteInfo {
     int32_t nameId = 0; ///< first string of the call, interned; 0: none, or computed at run time
     /// Outputs of the surface that lights query: row, components.
     struct Output {
-        rsl::OutputName name;
-        int row, size;
+        rsl::OutputName name; ///< of the surface's kernel
+        int row, size;        ///< first row, and the number of components
     };
     std::vector<Output> outputs;
     int32_t label = 0;                          ///< label of its rays, interned, for rayinfo()
@@ -244,9 +248,13 @@ struct KernelNeeds {
     bool hitModes = false;      ///< some call has a "hitmode"
     bool globalPhotons = false; ///< an indirectdiffuse() may use a global photon map
     bool facePlaces = false;    ///< positions on faces are read
+    bool bakes = false;         ///< bake() or bake3d() writes
+    bool bakesCentres = false;  ///< one of these may request the centres of micropolygons
+    /// Joins both.
     KernelNeeds& operator|=(const KernelNeeds& o) {
         records |= o.records, footprints |= o.footprints, hitModes |= o.hitModes;
         globalPhotons |= o.globalPhotons, facePlaces |= o.facePlaces;
+        bakes |= o.bakes, bakesCentres |= o.bakesCentres;
         return *this;
     }
 };
@@ -254,12 +262,13 @@ struct KernelNeeds {
 /// A kernel with its resolved call sites.
 struct BoundKernel {
     std::shared_ptr<const rsl::CompiledKernel> kernel;
-    std::shared_ptr<const shading::BatchPlan> plan;
+    std::shared_ptr<const shading::BatchPlan> plan; ///< sources of the inputs
     std::vector<SiteInfo> sites;
-    KernelNeeds needs;
-    bool mixed = false;
+    KernelNeeds needs;   ///< of its calls
+    bool mixed = false;  ///< batches may mix instances
     bool path = false;   ///< lobe shadeops are requests; else they are evaluated at once
     bool blocks = false; ///< all its requests can be read in rows (SiteInfo::block)
+    /// There is a kernel.
     explicit operator bool() const { return kernel != nullptr; }
 };
 /// File position of a call.

@@ -6,6 +6,7 @@
 
 namespace alpenglow::world {
 
+/// Samples the directions of one sky.
 class SkySampler {
 public:
     /// As for SkyTable.

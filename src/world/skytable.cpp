@@ -301,7 +301,8 @@ void MutableWorld::tabulateSkies(Evaluator& evaluator) {
         std::vector<SkyTable::Refined> refined = cellsToRefine(cells, columns, rows);
         for (SkyTable::Refined& r : refined) measureParts(r, l, columns, rows, evaluator);
         auto table = std::make_shared<SkySampler>(columns, rows, std::move(cells), std::move(refined));
-        if (!(table->concentration() > kConcentrated)) continue;
+        const bool samplesAll = l.shadowless && table->integral() > 0; // rays of lobes cannot pass what is in the way
+        if (!samplesAll && !(table->concentration() > kConcentrated)) continue;
         l.power = float(table->integral() / (2 * kPi)); // between the effect of a uniform sky and of a small sun overhead
         l.sky = std::move(table);
         l.guidable = false;

@@ -14,8 +14,8 @@ class SkyTable {
 public:
     /// A cell divided into side x side parts of equal solid angle.
     struct Refined {
-        int column = 0, row = 0, side = 1;
-        std::vector<float> weights; ///< in rows from the pole; their mean becomes the weight of the cell
+        int column = 0, row = 0, side = 1; ///< position of the cell; 1: it is not divided
+        std::vector<float> weights;        ///< in rows from the pole; their mean becomes the weight of the cell
     };
     /// weights: luminance of the cells, in rows from the pole, `width` numbers each. Negative values and NaN count as 0.
     /// refined: each cell at most once. Parts are sampled with at least kLeastPart of the density of their cell.

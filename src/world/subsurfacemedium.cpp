@@ -67,9 +67,10 @@ SubsurfaceMedium subsurfaceMediumOf(const SubsurfaceSite& site, const Subsurface
     b.anisotropy = std::isfinite(g) ? std::clamp(g, -0.999f, 0.999f) : 0;
     const float perLength = scale > 0 && std::isfinite(scale) ? scale : 1;
     const bool coefficients = site.scattering >= 0 || site.absorption >= 0;
-    const bool said = site.reflectance >= 0 || site.path >= 0 || site.diffusePath >= 0 ||
-                      (!coefficients && of.scattering.x < 0 && of.absorption.x < 0 && (of.reflectance.x >= 0 || of.path.x >= 0));
-    if (said) { // for isotropic scattering, regardless of "anisotropy": the values describe the appearance
+    const bool reported =
+        site.reflectance >= 0 || site.path >= 0 || site.diffusePath >= 0 ||
+        (!coefficients && of.scattering.x < 0 && of.absorption.x < 0 && (of.reflectance.x >= 0 || of.path.x >= 0));
+    if (reported) { // for isotropic scattering, regardless of "anisotropy": the values describe the appearance
         b.anisotropy = 0;
         const Color r = above0(colour(site.reflectance, of.reflectance.x >= 0 ? of.reflectance : Color(0.8f)), 0.9999f);
         const Color path = colour(site.path, of.path.x >= 0 ? of.path : Color(1));

@@ -330,11 +330,11 @@ void SurfaceBinder::hearMembers(SurfaceBinding& b) {
         return;
     }
     auto extended = std::make_shared<ShaderInstance>(*b.surface);
-    std::map<std::string, rsl::HeardMember> members;
+    std::map<std::string, rsl::QueriedMember> members;
     for (const auto& o : b.displacementS.kernel->outputs()) {
         const OutputName name = OutputName::parse(o.name);
         if (!name.member || name.what != OutputName::What::Value) continue;
-        rsl::HeardMember& what = members[name.name];
+        rsl::QueriedMember& what = members[name.name];
         what.length |= name.length;
         what.count = std::max(what.count, name.element + 1);
     }
@@ -342,7 +342,7 @@ void SurfaceBinder::hearMembers(SurfaceBinding& b) {
     InstanceRef& known = extended_[{b.surface.get(), b.displacement.get()}];
     if (!known) kept_.push_back(b.surface), known = extended;
     b.surface = known;
-    b.displacementTells = true;
+    b.displacementQueried = true;
 }
 
 void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, const Names& displacementVarying,
@@ -368,12 +368,12 @@ void SurfaceBinder::hearDisplacement(SurfaceBinding& b, const Names& varying, co
         if (const auto open = given.find(rsl::lengthParameter(p.name)); p.open && open != given.end())
             length = std::atoi(open->second.c_str());
         extended->parameters.strings[rsl::InputName::displacement(p.name).text()] =
-            rsl::HeardOutput{int(ShaderValue::kindOf(p.type.base)), length, p.storage == rsl::Storage::Varying}.text();
+            rsl::QueriedOutput{int(ShaderValue::kindOf(p.type.base)), length, p.storage == rsl::Storage::Varying}.text();
     }
     if (outputs.size() == left.size()) return;
     bindDisplacement(b, displacementVarying, outputs);
-    b.displacementTells = b.displacement != nullptr;
-    if (!b.displacementTells) return;
+    b.displacementQueried = b.displacement != nullptr;
+    if (!b.displacementQueried) return;
     InstanceRef& known = extended_[{b.surface.get(), b.displacement.get()}];
     if (!known) known = extended;
     b.surface = known;
@@ -398,7 +398,7 @@ bool SurfaceBinder::bindSurface(SurfaceBinding& b, Names varying) {
         varying.clear();
         outputs.clear();
         b.lightOutputs.clear();
-        b.aside.clear();
+        b.inLightOutputs.clear();
         b.surfaceS = world_.kernel(*fallback_, outputs, varying, false, path_, diagnostics_);
     }
     if (!b.surfaceS) return false;

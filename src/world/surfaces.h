@@ -13,6 +13,7 @@ float attributeNumber(const scene::Attributes&, const std::string& key, float fa
 /// Fills bindings_, bindingOf_ and related members for the shapes of a world whose lights are bound.
 class SurfaceBinder {
 public:
+    /// evaluator: runs kernels. All outlive this.
     SurfaceBinder(MutableWorld& world, Evaluator& e, Diagnostics& d) : world_(world), evaluator_(e), diagnostics_(d) {}
     /// Returns false after an error that prevents rendering; the error is reported.
     bool bindAll();

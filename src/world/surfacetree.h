@@ -11,12 +11,13 @@
 
 namespace alpenglow::world {
 
+/// Cells over the points of surfaces. Immutable once it is built.
 class SurfaceTree {
 public:
-    static constexpr int kSides = 6;
+    static constexpr int kSides = 6; ///< the six axes
     /// A point of a surface. Camera space.
     struct Point {
-        Vec3 P;
+        Vec3 P;       ///< position
         int side = 0; ///< sideOf() the normal on the lit side
     };
     /// The axis nearest to a unit normal, 1 to kSides.
@@ -37,8 +38,8 @@ public:
         std::span<const uint32_t> points; ///< indices
         std::span<const uint32_t> around; ///< of the cell that was divided; empty: none was
         int32_t& ofAround;                ///< what the maker keeps for all cells with this `around`; -1 at first
-        int side;
-        float size; ///< edge of its cube
+        int side;                         ///< as Point::side
+        float size;                       ///< edge of its cube
     };
     /// Divides cells of more than `split` points. Axes with fewer than `fewest` points have no cells. make() returns the number
     /// of a cell, 0 or more.

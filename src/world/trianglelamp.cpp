@@ -35,8 +35,8 @@ Vec3d direction(const Vec3d& a, const Vec3d& b, const Vec3d& c, double angle, do
     const Vec3d c1 = a * cosB1 + normalize(c - a * dot(c, a)) * root(1 - cosB1 * cosB1);
     // Then along the arc from b to that point.
     const double z = 1 - v * (1 - dot(c1, b));
-    const Vec3d aside = c1 - b * dot(c1, b);
-    return dot(aside, aside) > 0 ? b * z + normalize(aside) * root(1 - z * z) : b;
+    const Vec3d across = c1 - b * dot(c1, b);
+    return dot(across, across) > 0 ? b * z + normalize(across) * root(1 - z * z) : b;
 }
 } // namespace
 

@@ -7,17 +7,18 @@
 
 namespace alpenglow::world {
 
+/// An emitter of up to kMost triangles.
 class TriangleLamp {
 public:
-    static constexpr size_t kMost = 4;
+    static constexpr size_t kMost = 4; ///< most triangles
     /// Whether a shape has few enough triangles. Call after dicing.
     static bool has(const geometry::Shape&);
     explicit TriangleLamp(const geometry::Shape&);
 
     /// Solid angle of each triangle seen from a point, and their sum.
     struct Seen {
-        std::array<double, kMost> angle{};
-        double total = 0;
+        std::array<double, kMost> angle{}; ///< steradians
+        double total = 0;                  ///< their sum
     };
     /// Returns false if the triangles are so far away that sampling by area is as good, or if one fills so much of the hemisphere
     /// that its angles are inaccurate.

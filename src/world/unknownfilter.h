@@ -6,6 +6,7 @@
 
 namespace alpenglow::world {
 
+/// op: name of the call. Names the filters that there are.
 Diagnostic unknownFilter(const std::string& name, const std::string& op, const SourcePlace&);
 
 } // namespace alpenglow::world

@@ -46,7 +46,7 @@ void MutableWorld::findProcedurals() {
         procedurals_.add(b.box);
         if (scene::isDeferred(*p)) bounds.push_back(b);
     }
-    if (!bounds.empty()) deferred_ = std::make_unique<DeferredBounds>(std::move(bounds));
+    if (!bounds.empty()) deferred_ = std::make_unique<DeferredBounds>(std::move(bounds), settings_.deferredAtOnce);
 }
 
 std::vector<World::MapRead> WorldImpl::mapsRead() const {
@@ -74,7 +74,6 @@ std::shared_ptr<const WorldImpl> emptyWorld(const Settings& settings, ServiceTab
     w->begin(std::make_shared<scene::Frame>(), settings, services, d);
     w->textures_ = std::make_unique<texture::TextureSystem>(d);
     w->accel_ = std::make_unique<accel::Accel>(w->shapes_, std::vector<uint32_t>(), d, true);
-    w->built_ = true;
     return w;
 }
 

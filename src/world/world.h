@@ -13,8 +13,9 @@ class Evaluator;
 class PhotonStore;
 struct Service;
 /// Makes an Evaluator (evaluator.h) that runs kernels of a world before rays are traced. Several may run at once; the world
-/// outlives them.
-using MakeEvaluator = std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop)>;
+/// outlives them. building: the world is not complete, so what services answer may change and is not kept.
+using MakeEvaluator =
+    std::function<std::unique_ptr<Evaluator>(const WorldImpl&, Diagnostics&, const StopFlag* stop, bool building)>;
 
 /// A frame ready for tracing: shapes diced, acceleration structure built, shaders compiled, lights bound. Immutable; shared by
 /// threads.
@@ -25,17 +26,21 @@ public:
     static std::shared_ptr<const World> build(const std::shared_ptr<const scene::Frame>&, const Settings&,
                                               std::span<const Service> services, MakeEvaluator, Diagnostics&);
     virtual ~World() = default;
+    /// As the world was built.
     virtual const scene::Frame& frame() const = 0;
     virtual const Settings& settings() const = 0;
+    /// Figures of the build.
     struct Facts {
-        double buildSec = 0, compileSec = 0;
+        double buildSec = 0, compileSec = 0; ///< seconds
+        /// Kernels of all shaders; of these, how many do not wait, wait, came from the cache.
         int kernels = 0, affine = 0, suspending = 0, cacheHits = 0;
         size_t shapes = 0, before = 0; ///< before: those not entirely behind the camera
     };
+    /// For --stats.
     virtual Facts facts() const = 0;
     /// Maps that were read, by name: bytes of the file, of the map in memory, and of levels in a scratch file.
     struct MapRead {
-        std::string path;
+        std::string path; ///< of the file
         size_t bytes = 0, memory = 0, scratch = 0;
     };
     virtual std::vector<MapRead> mapsRead() const { return {}; }
@@ -50,7 +55,7 @@ public:
     /// primitives.
     struct FlippedNormalsCall {
         SourcePlace call, primitive; ///< first affected primitive in order of file and line
-        std::string shadeop;
+        std::string shadeop;         ///< name of the call
         size_t primitives = 0;
     };
     virtual std::vector<FlippedNormalsCall> callsTurnedAway() const { return {}; }

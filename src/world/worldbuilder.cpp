@@ -158,7 +158,7 @@ public:
         makeShapes();
         bindLights();
         w_.evaluators_ = std::move(evaluators);
-        evaluator_ = w_.evaluators_(w_, d_, settings_.stop);
+        evaluator_ = w_.evaluators_(w_, d_, settings_.stop, true);
         if (path_) w_.tabulateSkies(*evaluator_);
         if (!SurfaceBinder(w_, *evaluator_, d_).bindAll()) return nullptr;
         w_.measureOutputs();
@@ -169,7 +169,6 @@ public:
         if (!makeTree()) return nullptr;
         measure();
         w_.bindImager(d_);
-        w_.built_ = true;
         w_.facts_.buildSec = buildClock() - begin_ - w_.facts_.compileSec;
         return world_;
     }
@@ -249,8 +248,8 @@ private:
         w_.placeLights(*evaluator_);
         for (const auto& [shape, binding] : w_.emittersInAtmosphere_) {
             BoundLight& light = w_.lights_[size_t(shape->attributes().areaLight)];
-            light.hazy = true;
-            for (int part : light.parts) w_.lights_[size_t(part)].hazy = true;
+            light.inAtmosphere = true;
+            for (int part : light.parts) w_.lights_[size_t(part)].inAtmosphere = true;
         }
         w_.makeChoosers(d_);
         w_.facts_.shapes = w_.shapes_.size();

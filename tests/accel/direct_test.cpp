@@ -189,7 +189,7 @@ TEST(DirectTriangles, EveryWidthDecidesTheSame) {
     DirectTriangles triangles;
     for (uint32_t i = 0; i < 17; ++i) triangles.add({within(rng, 1), within(rng, 1), within(rng, 1), i, 0});
     DirectScene scene;
-    triangles.tell(scene);
+    triangles.copyTo(scene);
     std::fill_n(scene.visible, 17, kAll);
     scene.balls = 1;
     scene.radius2[0] = .25, scene.centre[0][0] = scene.centre[1][0] = scene.centre[2][0] = .1;

@@ -94,7 +94,7 @@ TEST_F(DeepShadows, MovingThingsAndThreads) {
     for (int i = 20; i < 36; ++i) {
         double left[3], sum = 0;
         for (int y = 0; y < 4; ++y) {
-            m.deep->leftAt(size_t(y * 40 + i), 4, left);
+            m.deep->transmittanceAt(size_t(y * 40 + i), 4, left);
             sum += left[1] / 4;
         }
         EXPECT_NEAR(sum, (i - 20 + .5) / 16, .06) << i; // two deviations of 256 independent halves; strata are nearer
@@ -125,11 +125,11 @@ TEST_F(DeepShadows, FogIsSeenByItsDepth) {
     const double density[] = {.2, .5, 1};
     for (const double z : {3.9, 4.5, 5.0, 6.0, 7.5, 8.5}) {
         double left[3];
-        m.deep->leftAt(8 * 16 + 8, z, left);
+        m.deep->transmittanceAt(8 * 16 + 8, z, left);
         const double way = std::clamp(z - 4, 0.0, 4.0);
         // Half of a step, which takes 1/64 of the light, either way.
         for (int k = 0; k < 3; ++k) EXPECT_NEAR(left[k], std::exp(-way * density[k]), z > 8 ? 1e-4 : .012) << z << " " << k;
-        m.deep->leftAt(0, z, left);
+        m.deep->transmittanceAt(0, z, left);
         EXPECT_EQ(left[0], 1) << "beside it";
     }
 }
@@ -160,7 +160,7 @@ TEST_F(DeepShadows, HairTakesWhatItCovers) {
     for (int layer = 0; layer < 3; ++layer) {
         double left[3], sum = 0;
         for (int x = 2; x < 14; ++x) {
-            m.deep->leftAt(size_t(8 * 16 + x), 3.5 + layer, left);
+            m.deep->transmittanceAt(size_t(8 * 16 + x), 3.5 + layer, left);
             sum += left[1] / 12;
         }
         EXPECT_NEAR(sum, .5 + .5 * std::pow(.6, layer + 1), .02) << "half of each pixel is hair";

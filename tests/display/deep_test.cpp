@@ -30,7 +30,7 @@ Image deepPicture() {
         DeepStep s;
         for (int k = 0; k < i % 6; ++k) {
             s.z += 1 + float(random() % 8) / 8;
-            for (float& l : s.left) l *= float(random() % 65) / 64;
+            for (float& l : s.transmittance) l *= float(random() % 65) / 64;
             deep->steps.push_back(s);
         }
         if (i % 6) m.data[size_t(i)] = deep->steps[size_t(deep->first.back())].z;
@@ -58,7 +58,7 @@ TEST(Deep, LightIsTakenBehindASurface) {
     d.steps = {{2, {.5f, 1, 0}}, {3, {.25f, .5f, 0}}};
     const auto left = [&](size_t pixel, double z) {
         double out[3];
-        d.leftAt(pixel, z, out);
+        d.transmittanceAt(pixel, z, out);
         return std::array{out[0], out[1], out[2]};
     };
     const std::array none{1., 1., 1.}, first{.5, 1., 0.}, both{.25, .5, 0.};
@@ -77,9 +77,9 @@ TEST(Deep, TheMeanOfStaircases) {
     meanStairs(all, 4, 0, out);
     ASSERT_EQ(out.size(), 3u);
     EXPECT_EQ(out[1].z, 1);
-    EXPECT_EQ(out[1].left[0], .75f); // 1 .5 .5 1
+    EXPECT_EQ(out[1].transmittance[0], .75f); // 1 .5 .5 1
     EXPECT_EQ(out[2].z, 2);
-    EXPECT_EQ(out[2].left[1], .375f); // 1 .5 0 0
+    EXPECT_EQ(out[2].transmittance[1], .375f); // 1 .5 0 0
 }
 
 TEST(Deep, NoStepIsFartherOffThanAsked) {
@@ -91,11 +91,11 @@ TEST(Deep, NoStepIsFartherOffThanAsked) {
         std::vector<DeepChange> copy = all;
         meanStairs(copy, 1000, error, d.steps);
         d.first = {0, d.steps.size()};
-        EXPECT_EQ(d.steps.back().left[0], 0);
+        EXPECT_EQ(d.steps.back().transmittance[0], 0);
         EXPECT_LE(double(d.steps.size()), error > 0 ? 1 / error + 1 : 1000);
         for (int z = 0; z <= 1000; ++z) {
             double left[3];
-            d.leftAt(0, z, left);
+            d.transmittanceAt(0, z, left);
             EXPECT_NEAR(left[0], 1 - z / 1000., error + 1e-6) << z;
         }
     }
@@ -113,7 +113,7 @@ TEST(Deep, FilesGiveBackWhatWasWritten) {
     for (size_t i = 0; i < m.deep->steps.size(); ++i) {
         EXPECT_EQ(r->deep->steps[i].z, m.deep->steps[i].z);
         for (int k = 0; k < 3; ++k) // quotients and products of singles
-            EXPECT_NEAR(r->deep->steps[i].left[k], m.deep->steps[i].left[k], 4e-7);
+            EXPECT_NEAR(r->deep->steps[i].transmittance[k], m.deep->steps[i].transmittance[k], 4e-7);
     }
     EXPECT_EQ(r->channels, std::vector<std::string>{"z"});
     EXPECT_EQ(r->pixel(2, 0)[0], m.pixel(2, 0)[0]);
@@ -162,8 +162,8 @@ std::vector<uint8_t> tiledFileOf(const Image& m) {
             for (size_t i = m.deep->first[p]; i < m.deep->first[p + 1]; ++i) {
                 values[0][p].push_back(m.deep->steps[i].z);
                 for (size_t c = 0; c < 3; ++c) {
-                    values[c + 1][p].push_back(left[c] > 0 ? 1 - m.deep->steps[i].left[c] / left[c] : 0);
-                    left[c] = m.deep->steps[i].left[c];
+                    values[c + 1][p].push_back(left[c] > 0 ? 1 - m.deep->steps[i].transmittance[c] / left[c] : 0);
+                    left[c] = m.deep->steps[i].transmittance[c];
                 }
             }
             for (size_t c = 0; c < 4; ++c) at[c][p] = values[c][p].data();
@@ -188,7 +188,7 @@ TEST(Deep, TilesAreReadAsLinesAre) {
     ASSERT_EQ(r->deep->first, m.deep->first);
     for (size_t i = 0; i < m.deep->steps.size(); ++i) {
         EXPECT_EQ(r->deep->steps[i].z, m.deep->steps[i].z);
-        for (int k = 0; k < 3; ++k) EXPECT_NEAR(r->deep->steps[i].left[k], m.deep->steps[i].left[k], 1e-5);
+        for (int k = 0; k < 3; ++k) EXPECT_NEAR(r->deep->steps[i].transmittance[k], m.deep->steps[i].transmittance[k], 1e-5);
     }
     for (size_t n = 0; n < file.size(); n += 16) {
         Diagnostics said;
@@ -225,7 +225,7 @@ TEST(Deep, CutAndDamagedFilesAreRefusedOrRead) {
         if (!r || !r->deep) continue;
         ASSERT_EQ(r->deep->first.size(), r->data.size() + 1);
         for (size_t i = 1; i < r->deep->steps.size(); ++i)
-            for (const float l : r->deep->steps[i].left) EXPECT_TRUE(l >= 0 && l <= 1);
+            for (const float l : r->deep->steps[i].transmittance) EXPECT_TRUE(l >= 0 && l <= 1);
     }
 }
 

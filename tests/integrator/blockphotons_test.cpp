@@ -27,7 +27,7 @@ void setPasses(Scene& s, float width, float window) {
     constexpr uint32_t kPhotons = 1000;
     PhotonEmission emission(s.world, {.all = true, .sky = false, .caustics = true, .width = width}, s.diagnostics);
     PhotonEmission::Thread thread(emission, s.diagnostics);
-    emission.tellLights();
+    emission.markPhotonLights();
     std::vector<std::unique_ptr<photonmap::PhotonGrid>> grids;
     for (uint32_t pass = 0; pass < 4; ++pass) {
         std::vector<StoredPhoton> found;

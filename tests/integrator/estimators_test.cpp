@@ -90,14 +90,14 @@ TEST(IndirectApart, SwitchedOff) {
 // trace() that samples area lights sees them where no light is sampled: along a mirrored ray, from another point than P.
 TEST(TraceSeesLights, WhereNoneAreSampled) {
     const std::string lamp = disk(2, .7, 5), asks = ", \"samplearealights\", 1";
-    const std::string mirror = shows("trace(P, up" + asks + ")"), elsewhere = shows("trace(P + .5 * up, up" + asks + ")"),
+    const std::string mirror = shows("trace(P, up" + asks + ")"), ownOrigin = shows("trace(P + .5 * up, up" + asks + ")"),
                       cosine = shows("trace(P + up, up, \"distribution\", \"cosine\", \"samplecone\", PI / 2" + asks + ")"),
                       past = shows("trace(P, aside" + asks + ")"), silent = shows("trace(P, up)");
     for (const Hider h : {Hider::Hidden, Hider::Raytrace, Hider::Path})
         for (const bool suspend : {false, true}) {
             const Settings s = traced(h, suspend);
             expectMean(of(mirror, lamp, s, 16), 5, 1e-6, "mirror");
-            expectMean(of(elsewhere, lamp, s, 16), 5, 1e-6, "mirror, elsewhere");
+            expectMean(of(ownOrigin, lamp, s, 16), 5, 1e-6, "mirror, elsewhere");
             expectMean(of(cosine, lamp, s, samples(10000)), 5 * ofDisk(1, .7), .02, "cosine, elsewhere");
             EXPECT_EQ(of(past, lamp, s, 4).mean(), 0);
             if (h != Hider::Path) EXPECT_EQ(of(silent, lamp, s, 4).mean(), 0);

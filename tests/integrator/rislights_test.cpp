@@ -88,6 +88,27 @@ TEST(RisLights, ShadowsKeepWhatIsNotShadowColor) {
                .3 * 2 / M_PI, .001, "behind a sheet");
 }
 
+// A wall between lamp and paint: with enableShadows 0 the form factor is as without it, for lamps that rays of lobes meet, too.
+TEST(RisLights, WithoutShadowsLightPassesWhatIsInTheWay) {
+    const std::string wall = block("Attribute \"visibility\" \"int camera\" 0\nSurface \"constant\"\nColor 0 0 0\n"
+                                   "Polygon \"P\" [-9 -9 1  9 -9 1  9 9 1  -9 9 1]");
+    for (const double half : {.5, 3.0}) {
+        std::ostringstream size;
+        size << "Scale " << 2 * half << ' ' << 2 * half << " 1\n";
+        const std::string lamp = size.str() + "Light \"PxrRectLight\" \"l\" \"float intensity\" 4 \"int enableShadows\" ";
+        const double want = 4 * ofRectangle(half, half, 2);
+        expectMean(paint(block(lamp + "0") + wall), want, .02, "none");
+        EXPECT_EQ(paint(block(lamp + "1") + wall).mean(), 0);
+    }
+    for (const char* far :
+         {"PxrDistantLight\" \"l\" \"int areaNormalize\" 1", "PxrDomeLight\" \"l\"", "PxrEnvDayLight\" \"l\""}) {
+        const std::string sky = std::string("Light \"") + far + " \"int enableShadows\" ";
+        const Moments free = paint(block(sky + "1")), behind = paint(block(sky + "0") + wall);
+        EXPECT_GT(free.mean(), .01) << far;
+        EXPECT_NEAR(free.mean(), behind.mean(), 4.753 * (free.se() + behind.se()) + 1e-6) << far;
+    }
+}
+
 TEST(RisLights, AMissingMapIsSaidAndTheLightShinesWithoutIt) {
     expectMean(
         paint("Light \"PxrDomeLight\" \"l\" \"float intensity\" .5 \"string lightColorMap\" \"nowhere.tex\"\n", {0, 0, 2}, 1), .5,

@@ -126,6 +126,17 @@ TEST(ShadowMaps, BiasOfCallAttributeAndOption) {
     EXPECT_NEAR(floorOf("bias4", "Ci = shadow(map, P, \"bias0\", 1, \"bias1\", 3, \"samples\", 1024);").one(at(0)).x, .5, .01);
 }
 
+// Aqsis: no bias by itself, so what is a tenth behind the square is dark.
+TEST(ShadowMaps, TheBiasOfADialect) {
+    writeShader("nearby", "surface nearby(string map = \"\") { Oi = 1; Ci = shadow(map, P); }\n");
+    const std::string rib = inWorld("Surface \"nearby\" \"string map\" " + lampMap("near.shd", 3.9f) + " " + kFloor);
+    for (const char* dialect : {"", "prman", "aqsis"}) {
+        Settings settings = withShaders(Hider::Hidden);
+        settings.dialect = dialect;
+        EXPECT_EQ(Scene(rib, settings).one(at(0)).x, dialect == std::string("aqsis") ? 1 : 0) << dialect;
+    }
+}
+
 TEST(ShadowMaps, ADefaultBiasThatHidesShadowsIsSaid) {
     // A tenth above the floor, nothing is .225 behind the square.
     const auto low = [](const std::string& name, const std::string& body, const std::string& before = "") {

@@ -96,7 +96,7 @@ TEST(Stages, RequestsAreThoseOfOnePoint) {
                 EXPECT_EQ(l.asked >> i & 1, asks);
                 if (!asks) continue;
                 EXPECT_EQ(odd >> i & 1, i == turn % 41) << "a direction whose square no float holds";
-                EXPECT_EQ(l.elsewhere >> i & 1, i == turn % 29);
+                EXPECT_EQ(l.ownOrigin >> i & 1, i == turn % 29);
                 if (odd >> i & 1) continue;
                 const Vec3 n = at(v.n, i), viewer = normalizeOr(-at(v.I, i), n);
                 EXPECT_TRUE(same(at(l.weight, i), triple(0)));

@@ -26,7 +26,7 @@ void passes(Scene& s, uint32_t passes, uint32_t count, float radius, const Gathe
     std::vector<StoredPhoton> found;
     ASSERT_TRUE(thread.emit(0xffffffffu, 0, 20000, 20000, found, nullptr));
     emission.learn(found, 0xffffffffu, 20000);
-    emission.tellLights();
+    emission.markPhotonLights();
     std::vector<std::unique_ptr<photonmap::PhotonGrid>> grids;
     constexpr uint32_t kBlock = 1000;
     for (uint32_t pass = 0; pass < passes; ++pass) {

@@ -109,7 +109,7 @@ TEST(PhotonGather, PathsLeaveToPhotonsWhatTheyBring) {
         const CameraRay up = rayTo({1.1f, 1.2f, 0}, {1, 2, 0}), down = rayTo({.3f, .8f, 0}, {.2f, 0, 0});
         EXPECT_GT(s.estimate(up, 2000).mean(), .01) << shader;
         PhotonEmission emission(s.world, {.all = true, .sky = false, .caustics = true, .width = .1f}, s.diagnostics);
-        emission.tellLights();
+        emission.markPhotonLights();
         std::vector<std::unique_ptr<photonmap::PhotonGrid>> grids;
         grids.push_back(std::make_unique<photonmap::PhotonGrid>(
             std::vector<photonmap::Photon>{photon({40, 2, 0}, Color(1), {0, -1, 0}, {0, -1, 0})}, .1f));

@@ -372,14 +372,14 @@ TEST(BakeLogs, KeepNoCountOfWhatIsGone) {
         EXPECT_TRUE(log.add("a.ptc", layout, key, numbers));
     };
     for (uint32_t s = 0; s < 100; ++s) sample(0, s);
-    log.settle();
+    log.commit();
     const size_t one = log.bytes();
     EXPECT_LT(one, 100u);
     for (uint32_t s = 0; s < 100; ++s) sample(1, s);
     log.discard();
     EXPECT_EQ(log.bytes(), one);
     for (uint32_t s = 0; s < 100; ++s) sample(1, s);
-    log.settle();
+    log.commit();
     EXPECT_EQ(log.bytes(), 2 * one);
 }
 
@@ -397,10 +397,10 @@ TEST(BakeLogs, LoopsThatBake) {
         EXPECT_TRUE(log.add("a.ptc", layout, {}, numbers));
     };
     turn(0);
-    log.settle();
+    log.commit();
     const size_t one = log.bytes();
     for (int i = 0; i < kTurns; ++i) turn(float(i % (kTurns / 2)));
-    log.settle();
+    log.commit();
     EXPECT_EQ(log.bytes(), one + one * kTurns / 2);
     // Nor does what others bake behind it take as long as the loop, each.
     for (int i = 0; i < kTurns; ++i) turn(float(i));
@@ -410,7 +410,7 @@ TEST(BakeLogs, LoopsThatBake) {
         other.vertex = uint32_t(i + 1);
         log.add("a.ptc", layout, other, numbers);
     }
-    log.settle();
+    log.commit();
     EXPECT_EQ(log.bytes(), one + one * kTurns / 2 + 2 * one * kTurns);
 }
 

@@ -75,7 +75,7 @@ TEST_F(Processes, MessagesComeInTheOrderOfTheFrames) {
         make("third");
     });
     p.say(message("behind"));
-    p.settle();
+    p.waitForFrames();
     EXPECT_EQ(said, (std::vector<std::string>{"before", "first", "between", "third", "behind"}));
     EXPECT_EQ(taken, 3);
 }
@@ -95,7 +95,7 @@ TEST_F(Processes, AFrameWaitsForTheFilesOfEarlierOnesAlone) {
         p.awaitRead("other.tif");
         make("third");
     });
-    p.settle();
+    p.waitForFrames();
     EXPECT_EQ(said, std::vector<std::string>{"second came behind"});
 }
 
@@ -116,7 +116,7 @@ TEST_F(Processes, FilesThatAreNotKnownMayBeAny) {
             p.say(message(there("done") ? "behind" : "beside"));
             make("second");
         });
-        p.settle();
+        p.waitForFrames();
     }
     EXPECT_EQ(said, (std::vector<std::string>{"beside", "behind"}));
 }
@@ -133,7 +133,7 @@ TEST_F(Processes, ATurnComesWhenEarlierFramesAreDrawn) {
     });
     frame(p, nothing, [&] { make("third"); });
     p.awaitRead("anything"); // of the reader: no frame is known to write it
-    p.settle();
+    p.waitForFrames();
     EXPECT_EQ(said, std::vector<std::string>{"behind"});
 }
 
@@ -151,7 +151,7 @@ TEST_F(Processes, NoMoreThanSoManyFramesAreAhead) {
         });
     frame(p, nothing, [] {});
     EXPECT_GE(taken, 1);
-    p.settle();
+    p.waitForFrames();
     EXPECT_EQ(taken, ahead + 1);
 }
 
@@ -167,7 +167,7 @@ TEST_F(Processes, MemoryIsTakenAtOnceUpToALimit) {
             if (before == 0) return p.say(message("memory is not known"));
             p.say(message(grown <= most + (size_t(24) << 20) ? "bounded" : std::to_string(grown)));
         });
-    p.settle();
+    p.waitForFrames();
     EXPECT_EQ(said, (std::vector<std::string>{"bounded", "bounded", "bounded"}));
 }
 
@@ -177,7 +177,7 @@ TEST_F(Processes, AProcessThatEndsByItselfIsToldOf) {
     p.setTake([&](const FrameResult& r) { all.add(r.outcome); });
     frame(p, nothing, [] { _exit(4); });
     frame(p, nothing, [] {});
-    p.settle();
+    p.waitForFrames();
     ASSERT_EQ(said.size(), 1u);
     EXPECT_EQ(said[0], "a frame is given up: its process ended with status 4");
     EXPECT_EQ(all.rendered, 1);

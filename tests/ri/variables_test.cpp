@@ -38,7 +38,25 @@ TEST(Declarations, Parse) {
         EXPECT_EQ(e->type, scene::Type::Float);
         EXPECT_EQ(e->numbers, (std::vector<float>{1, 2, 3}));
     }
-    EXPECT_EQ(inWorld("Surface \"a\" \"uniform flaot x\" 1")->only().code, Rie::Syntax);
+    for (const char* wrong :
+         {"Surface \"a\" \"uniform flaot x\" 1", "Declare \"x\" \"uniform flaot\"", "Surface \"a\" \"flaot x\" 1"}) {
+        EXPECT_EQ(inWorld(wrong)->only().code, Rie::Syntax);
+        EXPECT_EQ(inWorld(wrong)->only().hint, "did you mean float?") << wrong;
+    }
+}
+
+// A parameter of type shader takes a handle, as RIB of PRMan gives it: a string.
+TEST(Declarations, AShaderIsAString) {
+    for (const char* given : {"Surface \"a\" \"shader base\" [\"one\"] Sphere 1 -1 1 360",
+                              "Declare \"base\" \"uniform shader\" Surface \"a\" \"base\" \"one\" Sphere 1 -1 1 360",
+                              "Surface \"a\" \"shader[1] base\" [\"one\"] Sphere 1 -1 1 360"}) {
+        const auto c = inWorld(given);
+        EXPECT_EQ(c->only().severity, Severity::Warning) << c->messages();
+        EXPECT_NE(c->only().hint.find("co-shader"), std::string::npos);
+        const scene::Param* base = scene::find(c->primitive().attributes->surface->params, "base");
+        ASSERT_NE(base, nullptr);
+        EXPECT_EQ(base->strings, std::vector<std::string>{"one"}) << given;
+    }
 }
 
 TEST(Declarations, InlineOverridesForOneOccurrence) {

@@ -106,6 +106,24 @@ TEST(Information, LabelsOfRays) {
         EXPECT_EQ(s.one(rayTo({0, 3, 0}, {0, 1, 0})), Color(.25f));
     }
 }
+// raylabel() of Pixie: "camera" for rays of the camera.
+TEST(Information, CameraRaysHaveALabelInPixie) {
+    writeShader("labelword",
+                "surface labelword() { string l = raylabel(); Oi = 1; Ci = l == \"camera\" ? 1 : l == \"probe\" ? .5 : l "
+                "== \"\" ? .25 : 0; }\n");
+    writeShader("asksword",
+                "surface asksword() { color a = trace(P, vector(0, 1, 0), \"label\", \"probe\"), b = trace(P, vector(0, "
+                "1, 0)); Oi = 1; Ci = color(comp(a, 0), comp(b, 0), 0); }\n");
+    const std::string card =
+        "AttributeBegin\nAttribute \"visibility\" \"trace\" 1\nSurface \"labelword\"\nPolygon \"P\" [-9 1 -9 "
+        " -9 1 9  9 1 9  9 1 -9]\nAttributeEnd\n";
+    EXPECT_EQ(Scene(inWorld(std::string("Surface \"labelword\"\n") + kFloor), under(Hider::Hidden)).one(kView), Color(1, 1, 1));
+    for (Hider h : {Hider::Raytrace, Hider::Path}) {
+        Scene s(inWorld(card + "Surface \"asksword\"\n" + kFloor), under(h));
+        EXPECT_EQ(s.one(kView), Color(.5f, .25f, 0));
+        EXPECT_EQ(s.one(rayTo({0, 3, 0}, {0, 1, 0})), Color(1, 1, 1));
+    }
+}
 // BMRT's: a card of colour (.5, .25, 1) two above the floor, whose normal points down to it.
 TEST(Information, RaysOfBmrt) {
     writeShader("bmrtfull", R"(surface bmrtfull(float up = 1;) {

@@ -57,5 +57,48 @@ TEST(Solar, WithoutRaysTheSkyFacesTheSurface) {
         }
 }
 
+// A light without area has no normal: N is that of the lit point, as Ns, however the light is found (RISpec 3.2, table 12.3).
+TEST(Solar, TheSkyHasTheNormalOfTheLitPoint) {
+    writeShader("litsky", "light litsky() { solar() {\n"
+                          "    float up = normalize(N) . normalize(vtransform(\"world\", \"current\", vector(0, 1, 0)));\n"
+                          "    Cl = color(abs(up), abs(normalize(Ns) . normalize(N)), 0); } }\n");
+    writeShader("facingsky", "light facingsky() { solar() Cl = abs(normalize(I) . normalize(N)); }\n");
+    surfaceOf("facing", "    Ci = abs(normalize(I) . normalize(N));");
+    const double facing = Scene(scene("", "\"facing\""), under(Hider::Hidden)).one(kView).x;
+    surfaceOf("tracedsky",
+              "    Ci = trace(P, faceforward(normalize(N), I), \"distribution\", \"cosine\", \"samplecone\", PI / 2);");
+    for (const Hider h : {Hider::Hidden, Hider::Path})
+        for (const char* look : {"\"matte\" \"float Ka\" 0 \"float Kd\" 1", "\"tracedsky\""}) {
+            if (h == Hider::Hidden && std::string(look) == "\"tracedsky\"") continue; // no ray sees it there
+            Scene s(scene("LightSource \"litsky\" 1\n", look), under(h));
+            const Color c = s.one(kView);
+            EXPECT_NEAR(c.x, 1, 1e-5) << int(h) << look << s.messages();
+            EXPECT_NEAR(c.y, 1, 1e-5) << int(h) << look;
+            Scene viewed(scene("LightSource \"facingsky\" 1\n", look), under(h));
+            EXPECT_NEAR(viewed.one(kView).x, facing, 1e-5) << int(h) << look;
+        }
+}
+
+// Ns and I of the lit point are known to an area light where a ray meets it, too.
+TEST(Solar, LampsThatRaysMeetKnowTheLitPoint) {
+    writeShader("litlamp",
+                "light litlamp() { illuminate(P, N, PI / 2) Cl = 3 * abs(normalize(Ns) . normalize(vtransform(\"world\", "
+                "\"current\", vector(0, 1, 0)))); }\n");
+    writeShader("plainlamp", "light plainlamp() { illuminate(P, N, PI / 2) Cl = 3; }\n");
+    const auto lit = [](const std::string& lamp) {
+        Scene s(
+            scene(
+                "AttributeBegin\nAreaLightSource \"" + lamp +
+                    "\" 1\nSurface \"constant\"\nPolygon \"P\" [-1 1 -1  -1 1 1  1 1 1  1 1 -1]\nAttributeEnd\nIlluminate 1 1\n",
+                "\"matte\" \"float Ka\" 0 \"float Kd\" 1"),
+            under(Hider::Path));
+        return s.estimate(kView, samples(4000));
+    };
+    const auto plain = lit("plainlamp");
+    EXPECT_GT(plain.mean(), .1);
+    const auto asked = lit("litlamp");
+    EXPECT_NEAR(asked.mean(), plain.mean(), 4.753 * (asked.se() + plain.se()));
+}
+
 } // namespace
 } // namespace lightloop_test

@@ -395,7 +395,7 @@ public:
             if (held_.size() == 2) shade(s);
         }
     }
-    bool settle(S& s) override {
+    bool shadeQueued(S& s) override {
         if (held_.empty()) return false;
         ++lone;
         shade(s);

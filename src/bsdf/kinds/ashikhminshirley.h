@@ -8,6 +8,7 @@ namespace alpenglow::bsdf::AL_NAMESPACE {
 /// The facet rotated by half a turn about the normal, z.
 AL_INLINE Direction turnedAbout(const Direction& h) { return {-h.x, -h.y, h.z}; }
 
+/// Facets of the lobe "ashikhmin-shirley" (formula: shadeops/bsdf).
 struct AshikhminFacets {
     static constexpr const char* name = "ashikhmin-shirley";
     static constexpr bool kFresnel = true;
@@ -31,6 +32,6 @@ struct AshikhminFacets {
         return select3(useful(dot(h, o), h.z, o.z), h, turnedAbout(h));
     }
 };
-using AshikhminShirley = FacetLobe<AshikhminFacets>;
+using AshikhminShirley = FacetLobe<AshikhminFacets>; ///< the lobe
 
 } // namespace alpenglow::bsdf::AL_NAMESPACE

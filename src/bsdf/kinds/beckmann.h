@@ -40,6 +40,7 @@ struct SmithBeckmannFacets {
     static constexpr bool kFresnel = true;
     static constexpr const char* doc =
         "Facets with Gaussian slopes; roughness along udir, roughnessv across. Metals: \"eta\" of two.";
+    /// Own rows of prepare(): roughness along and across udir, factor of the density, Smith's lambda of wo.
     enum : int { kA = 6, kB, kPerDensity, kLambda };
     static AL_MEMBER void prepare(const Rows& p) {
         const vf a = sane(p.number(kRowRoughness)), b = sane(p.number(kRowRoughnessV));

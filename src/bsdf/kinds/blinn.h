@@ -5,6 +5,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// Facets of the lobe "blinn" (formula: shadeops/bsdf).
 struct BlinnFacets {
     static constexpr const char* name = "blinn";
     static constexpr bool kFresnel = true;
@@ -22,6 +23,6 @@ struct BlinnFacets {
         return visibleInGroove(samplePhong(p.own(7), {u.a, vf(0)}), o, u.b);
     }
 };
-using Blinn = FacetLobe<BlinnFacets>;
+using Blinn = FacetLobe<BlinnFacets>; ///< the lobe
 
 } // namespace alpenglow::bsdf::AL_NAMESPACE

@@ -8,6 +8,7 @@ namespace alpenglow::bsdf::AL_NAMESPACE {
 struct Cone {
     static constexpr bool distribution = false;
     static constexpr int needs = kNeedsHorizon | kNeedsA;
+    /// The part of prepare() that both share; perWeight: density of a sample over its value.
     static AL_MEMBER void prepareCone(const Rows& p, vf perWeight) {
         const vf a = p.number(kRowA), s = sinLanes(minLanes(a, vf(kPi)) * vf(0.5f));
         p.common(vf(1), minLanes(a * vf(0.5f), vf(0.7f)), select(a > 1e-6f, vf(0), vf(1)));
@@ -17,9 +18,11 @@ struct Cone {
         const vf chord = mad(s * vf(2), vf(1 + 1e-6f), vf(3e-7f));
         p.own(2, chord * chord);
     }
+    /// Whether w is in the cone and above the horizon.
     static AL_MEMBER vm overHorizon(const Given& p, const Direction& w) {
         return (p.number(kRowHasHorizon) == 0) | (dot(p.triple(kRowHorizon), w) > 0);
     }
+    /// The cone is one direction.
     static AL_MEMBER vm delta(const Given& p) { return p.number(kRowDelta) != 0; }
     /// By the chord, because 1 - cos of a narrow cone is lost in rounding.
     static AL_MEMBER vm inside(const Given& p, const Direction& w) {

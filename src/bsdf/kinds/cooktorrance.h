@@ -5,6 +5,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// Facets of the lobe "cook-torrance" (formula: shadeops/bsdf).
 struct BeckmannFacets {
     static constexpr const char* name = "cook-torrance";
     static constexpr bool kFresnel = true;
@@ -21,6 +22,6 @@ struct BeckmannFacets {
         return visibleInGroove(fromSlope(-p.own(6) * logOfRest(u.a), {vf(1), vf(0)}), o, u.b);
     }
 };
-using CookTorrance = FacetLobe<BeckmannFacets>;
+using CookTorrance = FacetLobe<BeckmannFacets>; ///< the lobe
 
 } // namespace alpenglow::bsdf::AL_NAMESPACE

@@ -4,6 +4,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// The lobe "diffuse": cosine-weighted directions about the axis.
 struct Diffuse {
     static constexpr const char* name = "diffuse";
     static constexpr const char* doc = "Lambert about axis: f = 1/pi. Radiance 1 from everywhere gives 1.";

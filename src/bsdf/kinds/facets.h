@@ -16,6 +16,7 @@ AL_INLINE Pair<vf> elliptic(vf u, vf first, vf second) {
     const vf x = c.a * first, y = c.b * second, l = vf(1) / rootLanes(mad(x, x, y * y));
     return {x * l, y * l};
 }
+/// log(1 - u), finite for u = 1.
 AL_INLINE vf logOfRest(vf u) { return logLanes(maxLanes(vf(1) - u, vf(1e-30f))); }
 
 /// Value of facets: colour, and density of the half vector h per solid angle of h.
@@ -48,6 +49,7 @@ template <class Facets> struct FacetLobe {
     static constexpr bool distribution = true;
     static constexpr int needs = kNeedsWo | kNeedsHorizon | kNeedsSurface;
     static constexpr int traits = kCosineOfAxis | kSameFromBoth;
+    /// The axes along and across udir.
     static AL_MEMBER Pair<Direction> tangentsOf(const Given& p) { return {p.ownTriple(0), p.ownTriple(3)}; }
     static AL_MEMBER void prepare(const Rows& p) {
         p.common(Facets::kFresnel ? reflectanceOfFacets(p) : vf(1), spreadOfRoughness(p), vf(0));

@@ -13,6 +13,8 @@ struct GgxFacets {
     static constexpr bool kFresnel = true;
     static constexpr const char* doc =
         "Facets of Trowbridge and Reitz; roughness along udir, roughnessv across. Metals: \"eta\" of two.";
+    /// Own rows of prepare(): roughness along and across udir, factor of the density, Smith's lambda of wo, lower bound of the
+    /// sampled cap.
     enum : int { kA = 6, kB, kPerDensity, kLambda, kLow };
     static AL_MEMBER void prepare(const Rows& p) {
         const vf a = sane(p.number(kRowRoughness)), b = sane(p.number(kRowRoughnessV));

@@ -7,6 +7,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// The lobe "glass-ggx": reflection and refraction, chosen by Fresnel's law.
 struct Glass {
     static constexpr const char* name = "glass-ggx";
     static constexpr const char* doc = "Reflection and refraction at facets with the distribution of Trowbridge and Reitz.";
@@ -31,6 +32,7 @@ struct Glass {
         const vf both = mad(absLanes(p.own(kFirst)), f, absLanes(p.own(kSecond)) * (vf(1) - f));
         p.common(maxLanes(both, vf(.02f)), spreadOfRoughness(p), vf(0));
     }
+    /// The directions and indices that prepare() stored.
     static AL_MEMBER GlassSide<vf> sideOf(const Given& p) {
         return {p.wo(),         p.ownTriple(kSide), {p.ownTriple(kAlong), p.ownTriple(kAcross)}, p.own(kHere), p.own(kThere),
                 p.own(kRoughA), p.own(kRoughB)};

@@ -6,6 +6,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// The lobe "hair" (formula: shadeops/bsdf).
 struct Hair {
     static constexpr const char* name = "hair";
     static constexpr const char* doc = "Light scattered by a fibre that points along axis.";

@@ -23,25 +23,30 @@ AL_INLINE vf loadLanes(const float* from) {
     __builtin_memcpy(&x, from, sizeof x);
     return x;
 }
+/// Writes as many floats as there are lanes; no alignment is required.
 AL_INLINE void storeLanes(float* to, vf x) { __builtin_memcpy(to, &x, sizeof x); }
 
 /// Lanes of a block.
 struct Given {
-    const float* at;
+    const float* at; ///< row 0 of the lanes
     /// A row (LobeRow), by lane.
     AL_MEMBER vf number(int row) const { return loadLanes(at + row * kStride); }
     /// Three rows from this one on.
     AL_MEMBER Direction triple(int row) const { return {number(row), number(row + 1), number(row + 2)}; }
+    /// The axis, and the direction toward the viewer; unit.
     AL_MEMBER Direction axis() const { return triple(kRowAxis); }
     AL_MEMBER Direction wo() const { return triple(kRowWo); }
     /// A row that the kind's prepare() has set.
     AL_MEMBER vf own(int k) const { return number(kRowOwn + k); }
+    /// Three of these rows.
     AL_MEMBER Direction ownTriple(int k) const { return triple(kRowOwn + k); }
 };
 /// Lanes of a block that prepare() may write.
 struct Rows : Given {
-    float* to;
+    float* to; ///< row 0 of the lanes
+    /// p: row 0 of the lanes, in a block.
     AL_MEMBER explicit Rows(float* p) : Given{p}, to(p) {}
+    /// Write one row, or three from this one on, for all lanes; own(): rows of the kind.
     AL_MEMBER void set(int row, vf x) const { storeLanes(to + row * kStride, x); }
     AL_MEMBER void set(int row, const Direction& v) const { set(row, v.x), set(row + 1, v.y), set(row + 2, v.z); }
     AL_MEMBER void own(int k, vf x) const { set(kRowOwn + k, x); }
@@ -54,8 +59,8 @@ struct Rows : Given {
 };
 /// f cos by channel, and the density of sample() per solid angle.
 struct Value {
-    Direction colour;
-    vf pdf;
+    Direction colour; ///< f cos, by channel
+    vf pdf;           ///< per solid angle
 };
 /// The same f cos in all channels.
 AL_INLINE Value grey(vf f, vf pdf) { return {{f, f, f}, pdf}; }
@@ -95,6 +100,7 @@ template <class Kind> static void sampleBlock(const float* block, uint32_t lanes
         out.set(kRowDrawn, select(good, vf(1), vf(0)));
     }
 }
+/// The optional members of a kind; 0 where it has none.
 template <class Kind> constexpr int traitsOf() {
     if constexpr (requires { Kind::traits; }) return Kind::traits;
     else return 0;

@@ -5,6 +5,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// The lobe "oren-nayar" (formula: shadeops/bsdf).
 struct OrenNayar {
     static constexpr const char* name = "oren-nayar";
     static constexpr const char* doc = "Rough diffuse surface with normal axis, seen from wo.";

@@ -41,7 +41,7 @@ struct PhaseTowardLight {
     static constexpr const char* doc = "As henyey-greenstein; three of ten draws are even in the angle to a light.";
     static constexpr bool distribution = false;
     static constexpr int needs = kNeedsA | kNeedsWo;
-    static constexpr float kShare = 0.3f;
+    static constexpr float kShare = 0.3f; ///< part of the draws that are directed at the light
     static AL_MEMBER void prepare(const Rows& p) { HenyeyGreenstein::prepare(p); }
     static AL_MEMBER Value evaluate(const Given& p, const Direction& w) {
         Value v = HenyeyGreenstein::evaluate(p, w);

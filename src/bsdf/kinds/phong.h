@@ -5,6 +5,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// The lobe of phong(): RISpec's highlight about the mirrored direction.
 struct Phong {
     static constexpr const char* name = "phong";
     static constexpr const char* doc = "Phong highlight: f cos = max(0, R.w)^a / pi above the surface.";

@@ -7,6 +7,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// SLProject's lobe of a traced reflection.
 struct PhongTrace {
     static constexpr const char* name = "slphong";
     static constexpr const char* doc =
@@ -15,6 +16,7 @@ struct PhongTrace {
     static constexpr int needs = kNeedsHorizon | kNeedsA;
     static constexpr int traits = kCosineOfHorizon | kAxisIsMirror | kTakesExponent;
     static constexpr float kPerfect = 1000; ///< SLMaterial::PERFECT
+    /// Whether w is on the side of the horizon where the axis is.
     static AL_MEMBER vm sameSide(const Given& p, const Direction& w) {
         const Direction horizon = p.triple(kRowHorizon);
         return (p.number(kRowHasHorizon) == 0) | (dot(horizon, p.axis()) * dot(horizon, w) > 0);

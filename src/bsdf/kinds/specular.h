@@ -8,6 +8,7 @@ namespace alpenglow::bsdf::AL_NAMESPACE {
 /// Half angle of a highlight with exponent a.
 AL_INLINE vf spreadOfExponent(vf a) { return minLanes(vf(0.7f), rootLanes(vf(2) / (a + vf(1)))); }
 
+/// The lobe of specular(): RISpec's highlight about the halfway vector.
 struct Specular {
     static constexpr const char* name = "specular";
     static constexpr const char* doc = "Blinn highlight: f cos = max(0, N.H)^a / pi above the surface.";

@@ -5,6 +5,7 @@
 
 namespace alpenglow::bsdf::AL_NAMESPACE {
 
+/// Facets of the lobe "ward" (formula: shadeops/bsdf).
 struct WardFacets {
     static constexpr const char* name = "ward";
     static constexpr bool kFresnel = false;
@@ -23,6 +24,6 @@ struct WardFacets {
         return fromSlope(-logOfRest(u.a) / mad(x, x, y * y), d);
     }
 };
-using Ward = FacetLobe<WardFacets>;
+using Ward = FacetLobe<WardFacets>; ///< the lobe
 
 } // namespace alpenglow::bsdf::AL_NAMESPACE

@@ -6,11 +6,11 @@
 namespace alpenglow::bsdf::AL_NAMESPACE {
 using namespace shadeops::AL_NAMESPACE;
 
-using Direction = Triple<vf>;
+using Direction = Triple<vf>; ///< a direction for each lane
 
 /// Orthonormal basis about a unit normal, without a branch and without trigonometry (Duff et al., JCGT 2017).
 struct Basis {
-    Direction t, u, n;
+    Direction t, u, n; ///< n is the normal
 };
 /// n: unit.
 AL_INLINE Basis basisAbout(const Direction& n) {

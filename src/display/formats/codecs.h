@@ -6,15 +6,16 @@
 
 namespace alpenglow::display {
 
+/// The bytes of a file.
 using Bytes = std::span<const uint8_t>;
 
 /// Diagnostics context of a decoder.
 struct DecodeContext {
-    const std::string& name;
-    Diagnostics& diags;
-    const ReadOptions& options;
-    size_t fileBytes;
-    bool file = false; ///< the name is a file name: unknown formats are read through the module (foreign.h)
+    const std::string& name;    ///< of the file, for messages
+    Diagnostics& diags;         ///< where errors are reported
+    const ReadOptions& options; ///< what the caller asked for
+    size_t fileBytes;           ///< size of the encoded file
+    bool file = false;          ///< the name is a file name: unknown formats are read through the module (foreign.h)
     /// Reports `cannot read "name": why` and returns nothing.
     std::nullopt_t refuse(const std::string& why, Rie code = Rie::BadFile) const;
     /// Warns about a file that is read all the same.
@@ -27,6 +28,7 @@ struct DecodeContext {
 struct PictureFormat {
     const char* name;         ///< for messages
     bool (*recognise)(Bytes); ///< by the first bytes
+    /// Decodes a complete file; nothing after an error, which is reported.
     std::optional<Image> (*decode)(Bytes, const DecodeContext&);
     /// Writes to an open file; returns false after an error, which is in `why` (or in the file). Null: the format is read only.
     bool (*encode)(OutputFile&, const Image&, const WriteOptions&, Diagnostics&, std::string& why) = nullptr;

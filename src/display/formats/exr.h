@@ -13,6 +13,7 @@ namespace alpenglow::display {
 /// Bytes in memory as OpenEXR reads them.
 class MemoryStream : public Imf::IStream {
 public:
+    /// name: for messages of OpenEXR. The bytes must outlive the stream.
     MemoryStream(Bytes b, const std::string& name) : Imf::IStream(name.c_str()), bytes_(b) {}
     bool read(char c[], int n) override {
         if (n < 0 || at_ > bytes_.size() || bytes_.size() - at_ < size_t(n)) throw Iex::InputExc("it is truncated");
@@ -32,6 +33,7 @@ private:
 /// An OutputFile as OpenEXR writes it. Errors show in OutputFile::ok().
 class FileStream : public Imf::OStream {
 public:
+    /// Writes from the current position; the file must outlive the stream.
     explicit FileStream(OutputFile& f) : Imf::OStream(f.path().c_str()), file_(f) {}
     void write(const char c[], int n) override {
         if (!file_.write(c, size_t(n))) throw Iex::IoExc("write failed");

@@ -80,7 +80,7 @@ void addStairs(std::vector<Taken>& samples, std::vector<DeepStep>& out) {
             for (int c = 0; c < 3; ++c) {
                 const float clear = 1 - std::clamp(t.opacity[c], 0.f, 1.f);
                 if (!(clear < 1)) continue; // also NaN, which has no opacity
-                s.left[c] *= slab ? float(exact::pow(double(clear), 1.0 / kSlab)) : clear;
+                s.transmittance[c] *= slab ? float(exact::pow(double(clear), 1.0 / kSlab)) : clear;
             }
             out.push_back(s);
         }
@@ -232,10 +232,10 @@ bool encodeDeep(OutputFile& out, const Image& m, std::string& why) {
                     float sum = 0;
                     line.values[0][at] = s.z;
                     for (size_t c = 0; c < 3; ++c) { // opacity of the sample relative to the incoming light
-                        const float o = left[c] > 0 ? 1 - s.left[c] / left[c] : 0;
+                        const float o = left[c] > 0 ? 1 - s.transmittance[c] / left[c] : 0;
                         line.values[c + 1][at] = o;
                         sum += o;
-                        left[c] = s.left[c];
+                        left[c] = s.transmittance[c];
                     }
                     line.values[4][at] = sum / 3;
                 }

@@ -6,6 +6,7 @@
 
 namespace alpenglow::display::pixar {
 
+/// The bytes of a coded tile.
 using Bytes = std::span<const uint8_t>;
 
 /// Each fills `tile` with samples of `sampleBytes` bytes in the byte order of the file. Returns null on success, else an error as

@@ -8,14 +8,17 @@
 
 namespace alpenglow::models {
 
+/// Takes a scene of assimp over into a Model.
 class AssimpReader {
 public:
+    /// path: of the file, whose folder has the pictures. Scene and model must outlive the reader.
     AssimpReader(const aiScene& s, std::string path, Model& out) : scene_(s), path_(std::move(path)), out_(out) {}
+    /// Fills the model; what cannot be taken over becomes a note.
     void all();
 
 private:
     void note(bool error, std::string text) {
-        if (said_.insert(text).second) out_.notes.push_back({error, std::move(text)});
+        if (reported_.insert(text).second) out_.notes.push_back({error, std::move(text)});
     }
     void warn(std::string text) { note(false, std::move(text)); }
     void error(std::string text) { note(true, std::move(text)); }
@@ -43,9 +46,10 @@ private:
     Model& out_;
     std::map<std::string, int> names_;  ///< of nodes
     std::map<std::string, int> images_; ///< by the name that materials use
-    std::set<std::string> said_;
+    std::set<std::string> reported_;
 };
 
+/// To row vectors.
 Matrix assimpMatrix(const aiMatrix4x4&);
 
 } // namespace alpenglow::models

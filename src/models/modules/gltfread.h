@@ -9,14 +9,17 @@
 
 namespace alpenglow::models {
 
+/// Takes a file that tinygltf has parsed over into a Model.
 class GltfReader {
 public:
+    /// File and model must outlive the reader.
     GltfReader(const tinygltf::Model& in, Model& out) : in_(in), out_(out) {}
+    /// Fills the model; what cannot be taken over becomes a note.
     void all();
 
 private:
     void note(bool error, std::string text) {
-        if (said_.insert(text).second) out_.notes.push_back({error, std::move(text)});
+        if (reported_.insert(text).second) out_.notes.push_back({error, std::move(text)});
     }
     void warn(std::string text) { note(false, std::move(text)); }
     void error(std::string text) { note(true, std::move(text)); }
@@ -57,7 +60,7 @@ private:
 
     const tinygltf::Model& in_;
     Model& out_;
-    std::set<std::string> said_;
+    std::set<std::string> reported_;
 };
 
 /// A number of an extension; the default where there is none.

@@ -10,7 +10,7 @@ namespace alpenglow::ri {
 
 /// The context that the C functions act on, which is none of their arguments.
 struct Client {
-    Target& to;
+    Target& to;        ///< receives the calls
     SourcePlace place; ///< of what is called; for a program "call" and which one it is
     const char* by;    ///< " called by a library" or "", for messages
     /// That of this thread, else that of the process; null when there is none.
@@ -52,6 +52,7 @@ private:
 /// what they report reaches the program's error handler when the outermost is done (ri/c/errors.h).
 class Boundary {
 public:
+    /// Waits until no other thread is in a call.
     Boundary();
     ~Boundary();
     Boundary(const Boundary&) = delete;
@@ -63,7 +64,9 @@ private:
 
 /// A parameter list of C: tokens and values up to RI_NULL.
 struct Pairs {
+    /// Reads up to RI_NULL.
     explicit Pairs(va_list);
+    /// Number of tokens.
     RtInt count() const { return RtInt(tokens.size()); }
     std::vector<RtToken> tokens;
     std::vector<RtPointer> values;
@@ -73,7 +76,9 @@ struct Pairs {
 /// it; without a client RIE_NOTSTARTED is reported.
 class Building : Boundary {
 public:
+    /// request: its name in the table.
     explicit Building(const char* request);
+    /// Append an argument each: a number or text bare, arrays with their n values.
     Building& number(double);
     Building& number(RtFloat f);
     Building& number(RtInt i) { return number(double(i)); }

@@ -132,8 +132,8 @@ namespace {
 
 class RifStage final : public RequestReceiver, private Target {
 public:
-    RifStage(std::string path, std::unique_ptr<RifPlugin> plugin, RequestReceiver& to, Diagnostics& said)
-        : path_(std::move(path)), plugin_(std::move(plugin)), filter_(plugin_->GetFilter()), to_(to), reporter_(said) {}
+    RifStage(std::string path, std::unique_ptr<RifPlugin> plugin, RequestReceiver& to, Diagnostics& reported)
+        : path_(std::move(path)), plugin_(std::move(plugin)), filter_(plugin_->GetFilter()), to_(to), reporter_(reported) {}
 
     void request(const Call& c) override {
         const RifFunction* f = functionOf(c.request->name);
@@ -205,7 +205,7 @@ private:
 } // namespace
 
 std::unique_ptr<RequestReceiver> loadRif(const std::string& path, std::vector<std::string> arguments, RequestReceiver& to,
-                                         Diagnostics& said, std::string& why) {
+                                         Diagnostics& reported, std::string& why) {
     void* handle = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL); // stays loaded: it may have threads of its own
     if (!handle) {
         const char* reason = dlerror();
@@ -222,7 +222,7 @@ std::unique_ptr<RequestReceiver> loadRif(const std::string& path, std::vector<st
     words.push_back(nullptr);
     try {
         std::unique_ptr<RifPlugin> plugin(make(int(arguments.size()), words.data()));
-        if (plugin) return std::make_unique<RifStage>(path, std::move(plugin), to, said);
+        if (plugin) return std::make_unique<RifStage>(path, std::move(plugin), to, reported);
         why = "RifPluginManufacture gave nothing";
     } catch (const std::exception& e) { why = fmt::format("RifPluginManufacture threw: {}", e.what()); } catch (...) {
         why = "RifPluginManufacture threw";

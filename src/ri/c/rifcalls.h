@@ -22,6 +22,7 @@ namespace alpenglow::ri {
 /// Thrown if C cannot express a request: the filter does not see it.
 struct NotInC {};
 
+/// The function of ri.h for a filter of that name. Throws NotInC.
 inline RtFilterFunc filterOf(const std::string& name) {
     static const std::map<std::string, RtFilterFunc> kFilters = {{"box", RiBoxFilter},
                                                                  {"triangle", RiTriangleFilter},
@@ -42,6 +43,7 @@ inline RtFilterFunc filterOf(const std::string& name) {
 /// The arguments of a request, read one by one as C has them. Counts of arrays, which RIB leaves out, follow from these.
 class RifArguments {
 public:
+    /// handle: the object of C for a handle of RIB. The call must outlive this.
     RifArguments(const Call& c, const Declarations& d, std::function<RtPointer(const std::string&)> handle)
         : call_(c), declarations_(d), handle_(std::move(handle)) {
         const std::vector<ArgSpec>& specs = c.request->args;
@@ -52,8 +54,10 @@ public:
         const bool classes = c.request->name == "Attribute" || c.request->name == "Option";
         for (const RawParam& p : c.params) parameter(p.token, p.value, classes ? category : "");
     }
+    /// The request returns a handle.
     bool isLight() const { return call_.request->name == "LightSource" || call_.request->name == "AreaLightSource"; }
 
+    /// The next argument, as the C type T. Throws NotInC.
     template <class T> T next() {
         if constexpr (std::is_same_v<T, RtFloat>) return number(RI_INFINITY);
         else if constexpr (std::is_same_v<T, RtInt>) return integer();
@@ -70,6 +74,7 @@ public:
             return nullptr;
         }
     }
+    /// The parameter list; valid as long as this.
     RtInt count() const { return RtInt(tokens_.size()); }
     RtToken* tokens() { return tokens_.data(); }
     RtPointer* values() { return values_.data(); }
@@ -196,6 +201,7 @@ template <class R, class... A, size_t... I> RtPointer callWith(R (*f)(A...), Rif
         return std::apply(f, all);
     }
 }
+/// With the arguments read one by one.
 template <class R, class... A> RtPointer callWith(R (*f)(A...), RifArguments& a) {
     return callWith(f, a, std::index_sequence_for<A...>());
 }

@@ -15,10 +15,11 @@ namespace alpenglow::ri {
 class Sketch {
 public:
     Sketch(); ///< the state at the begin of a stream
+    /// The state in the middle of a stream.
     Sketch(Declarations, int colorSamples, scene::AttributesRef);
 
-    Declarations declarations;
-    int colorSamples = 3;
+    Declarations declarations; ///< those in effect
+    int colorSamples = 3;      ///< numbers of a colour
     /// Only bases and their steps are kept up to date.
     scene::AttributesRef attributes;
 

@@ -18,11 +18,13 @@ public:
     virtual ~Target() = default;
     /// Receives a request. Its parameter list is not yet typed; its place is that of the call.
     virtual void execute(const Call&) = 0;
+    /// Where faults of calls are reported.
     virtual Reporter& reporter() = 0;
     /// Whether further requests are ignored.
     virtual bool stopped() const { return false; }
     // These determine how many values the arrays of the next call have.
     virtual const Declarations& declarations() const = 0;
+    /// Numbers of a colour; the attributes in effect.
     virtual int colorSamples() const = 0;
     virtual scene::AttributesRef attributes() = 0;
     /// A number that no light or object of this target has.
@@ -53,6 +55,7 @@ private:
 /// Executes calls.
 class InterpreterTarget : public Target {
 public:
+    /// The interpreter must outlive the target.
     explicit InterpreterTarget(Interpreter& in) : in_(in) {}
     void execute(const Call&) override;
     Reporter& reporter() override { return in_.reporter; }

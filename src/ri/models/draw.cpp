@@ -38,7 +38,7 @@ std::optional<std::string> textOf(const std::string& path, const ModelLog::Sink&
 
 std::vector<scene::Primitive> readModelFile(const std::string& file, const ModelLog::Sink& sink,
                                             const std::shared_ptr<ReadLog>& reads) {
-    ModelLog said(sink);
+    ModelLog reported(sink);
     const auto text = textOf(file, sink);
     if (!text) return {};
     const ReadLibrary library = [&](const std::string& name) -> std::optional<std::string> {
@@ -47,7 +47,7 @@ std::vector<scene::Primitive> readModelFile(const std::string& file, const Model
         if (reads) reads->add(path);
         return textOf(path, sink);
     };
-    std::vector<scene::Primitive> parts = readModel(file, *text, library, said);
+    std::vector<scene::Primitive> parts = readModel(file, *text, library, reported);
     for (scene::Primitive& p : parts)
         for (scene::Param& v : p.params)
             if (v.name == "texturename" && !v.strings.empty())
@@ -66,10 +66,10 @@ void Interpreter::drawModel(const std::string& name, const Call& call, const sce
     if (file.empty()) return;
     if (!lastModel_ || lastModel_->file != file) {
         lastModel_.reset();
-        auto said = [&](Severity s, Rie code, const SourcePlace& place, std::string message) {
+        auto reported = [&](Severity s, Rie code, const SourcePlace& place, std::string message) {
             reporter.report(s, code, place, std::move(message));
         };
-        auto model = std::make_shared<Model>(Model{file, readModelFile(file, said, settings.reads)});
+        auto model = std::make_shared<Model>(Model{file, readModelFile(file, reported, settings.reads)});
         lastModel_ = std::move(model);
     }
     const auto model = lastModel_; // kept while it is drawn, and for the next request of the same name

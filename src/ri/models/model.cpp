@@ -8,14 +8,14 @@
 namespace alpenglow::ri {
 
 ModelLog::~ModelLog() {
-    if (said_ > size_t(limits::kModelMessages))
+    if (reported_ > size_t(limits::kModelMessages))
         sink_(Severity::Warning, Rie::Limit, {last_.file, 0, 0},
-              fmt::format("{} more faults of this file", said_ - size_t(limits::kModelMessages)));
+              fmt::format("{} more faults of this file", reported_ - size_t(limits::kModelMessages)));
 }
 
 void ModelLog::say(Severity s, Rie code, const SourcePlace& place, std::string message) {
     last_ = place;
-    if (++said_ <= size_t(limits::kModelMessages)) sink_(s, code, place, std::move(message));
+    if (++reported_ <= size_t(limits::kModelMessages)) sink_(s, code, place, std::move(message));
 }
 
 scene::Param variable(const char* name, scene::Class cls, scene::Type type, std::vector<float> numbers) {

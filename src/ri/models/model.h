@@ -19,9 +19,11 @@ namespace alpenglow::ri {
 /// The first faults of a file are reported one by one (limits::kModelMessages), the others are counted.
 class ModelLog {
 public:
-    using Sink = std::function<void(Severity, Rie, const SourcePlace&, std::string)>;
+    using Sink = std::function<void(Severity, Rie, const SourcePlace&, std::string)>; ///< receives each message
+    /// s: called in the thread that reports.
     explicit ModelLog(Sink s) : sink_(std::move(s)) {}
     ~ModelLog();
+    /// Report a fault of the file, or count it.
     void error(Rie code, const SourcePlace& place, std::string message) { say(Severity::Error, code, place, std::move(message)); }
     void warning(Rie code, const SourcePlace& place, std::string message) {
         say(Severity::Warning, code, place, std::move(message));
@@ -30,7 +32,7 @@ public:
 private:
     void say(Severity, Rie, const SourcePlace&, std::string);
     Sink sink_;
-    size_t said_ = 0;
+    size_t reported_ = 0;
     SourcePlace last_;
 };
 

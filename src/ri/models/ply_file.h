@@ -15,14 +15,14 @@ enum class PlyNumber { I8, U8, I16, U16, I32, U32, I64, U64, F32, F64 };
 
 /// A number of each row of an element, or a list of numbers.
 struct PlyProperty {
-    std::string name;
-    PlyNumber type = PlyNumber::F32;
-    std::optional<PlyNumber> count; ///< of a list
+    std::string name;                ///< of the header
+    PlyNumber type = PlyNumber::F32; ///< of the number, or of the list's numbers
+    std::optional<PlyNumber> count;  ///< of a list
 };
 /// So many rows of the same properties.
 struct PlyElement {
-    std::string name;
-    double count = 0;
+    std::string name; ///< of the header
+    double count = 0; ///< of rows; not checked against the size of the file
     std::vector<PlyProperty> properties;
     /// The index of a property; -1: there is none of this name.
     int find(std::string_view n) const {
@@ -40,6 +40,7 @@ struct PlyRow {
 /// Reads the header, then row by row, in the order of the file. The log reports what is wrong.
 class PlyFile {
 public:
+    /// path: for messages. The bytes must outlive this.
     PlyFile(const std::string& path, std::string_view bytes, ModelLog& log) : path_(path), bytes_(bytes), log_(log) {}
     /// Reads the header. False after an error.
     bool header();

@@ -145,7 +145,7 @@ void displayChannel(Interpreter& in, const Call& c) {
     Resolved r = in.declarations.resolve(c.text(0), "");
     if (r.malformed) {
         in.reporter.error(Rie::Syntax, c.place, fmt::format("DisplayChannel: \"{}\" is not a declaration", c.text(0)),
-                          "class type name");
+                          declarationHint(c.text(0), true, "class type name"));
         return;
     }
     scene::Param p;

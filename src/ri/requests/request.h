@@ -20,32 +20,33 @@ enum Scope : unsigned { kBase = 1, kFrame = 2, kWorld = 4, kObject = 8, kAnywher
 
 /// One entry of a signature.
 struct ArgSpec {
+    /// What is accepted. Handle: a number or text. Basis: a name or 16 numbers.
     enum class Form { Number, Int, String, Handle, Basis };
-    Form form = Form::Number;
-    bool array = false; ///< any length
-    int count = 1;      ///< numbers, when not an array: bare or in brackets, mixed as one likes
-    int otherCount = 0; ///< also accepted in one array (the 16-number Translate of old files)
-    bool optional = false;
-    std::string name;
+    Form form = Form::Number; ///< of each value
+    bool array = false;       ///< any length
+    int count = 1;            ///< numbers, when not an array: bare or in brackets, mixed as one likes
+    int otherCount = 0;       ///< also accepted in one array (the 16-number Translate of old files)
+    bool optional = false;    ///< it may be left out
+    std::string name;         ///< for messages and prototypes
 };
 
 /// The description of a request.
 struct Request {
-    using Handler = void (*)(Interpreter&, const Call&);
+    using Handler = void (*)(Interpreter&, const Call&); ///< does what the request asks, in legal scopes only
     /// The matrix of a transform request; empty when its arguments are bad (reported).
     using MatrixOf = std::optional<Matrix> (*)(Interpreter&, const Call&);
 
-    std::string_view name;
+    std::string_view name; ///< as in RIB
     /// "string name; number[4] window; int[] nverts; handle h; basis u; number x?; .." - entries separated by "; ",
     /// [n] = exactly n, [a/b] = a or b, [] = any number, ? = may be left out, .. = a parameter list follows.
     std::string_view signature;
     Kind kind;
     unsigned scopes;
-    bool motion; ///< legal in a motion block (RISpec 3.2, section 6)
-    std::string_view doc;
-    std::string_view sample; ///< arguments that are correct; the tests read every one
-    Handler handler;
-    MatrixOf matrix = nullptr;
+    bool motion;               ///< legal in a motion block (RISpec 3.2, section 6)
+    std::string_view doc;      ///< for the manual
+    std::string_view sample;   ///< arguments that are correct; the tests read every one
+    Handler handler;           ///< not null
+    MatrixOf matrix = nullptr; ///< null: no transform
     /// Arguments of the call in C without the parameter list, where they do not follow from the signature (header.h).
     std::string_view c = {};
 

@@ -21,9 +21,9 @@ void declare(Interpreter& in, const Call& c) {
     auto d = parseDeclaration(c.text(1));
     if (!d || name.empty() || name.find(' ') != name.npos)
         in.reporter.error(Rie::Syntax, c.place, fmt::format("Declare \"{}\": \"{}\" is not a declaration", name, c.text(1)),
-                          "[class] type [[n]], for example \"varying color\"");
+                          declarationHint(c.text(1), false, "[class] type [[n]], for example \"varying color\""));
     else in.declarations.declare(name, *d);
-    if (saysDouble(c.text(1))) in.sayDouble(c.place);
+    if (const OtherType* o = otherTypeIn(c.text(1))) in.sayOtherType(*o, c.place);
 }
 
 void frameBegin(Interpreter& in, const Call& c) {

@@ -32,14 +32,16 @@ struct Place {
 struct Expr;
 struct Stmt;
 struct Function;
+/// The parent owns its children.
 using ExprPtr = std::unique_ptr<Expr>;
 using StmtPtr = std::unique_ptr<Stmt>;
 
 /// A variable of any origin. Address identity: two uses of one variable share the Symbol.
 struct Symbol {
+    /// Where it is declared. Global: predefined.
     enum class Origin : uint8_t { Local, ShaderParameter, FunctionParameter, Global };
-    std::string name;
-    Type type;
+    std::string name;                       ///< as declared; "this->x" for members
+    Type type;                              ///< as declared
     Storage storage = Storage::Unspecified; ///< after checking: parameters of shaders default to Uniform, locals to Varying
     Origin origin = Origin::Local;
     bool output = false;     ///< shader: AOV; function: by reference
@@ -49,7 +51,7 @@ struct Symbol {
         false; ///< parameter of a shader, `float x[]`: as long as what the scene gives; `type` has the length of the default
     bool resizable = false; ///< `float x[]`, local or a parameter of a function: its length may change
     bool isExtern = false;  ///< only between parser and checker, which puts the outer variable in its place
-    Place place;
+    Place place;            ///< of the declaration
 };
 
 /// What an expression is; behind each kind the members of Expr that it uses.
@@ -110,27 +112,28 @@ struct NamedArg {
     };
     std::string name;
     ExprPtr value;
-    bool output = false;
-    Place place;
-    Name named = Name::Written;
+    bool output = false;        ///< a variable that the call sets
+    Place place;                ///< of the token
+    Name named = Name::Written; ///< how the name is known
 };
 
 /// An expression, or the place of an assignment. Before checking `type` and what calls are bound to are not set.
 struct Expr {
-    ExprKind kind{};
-    ExprOp op = ExprOp::None;
+    ExprKind kind{};          ///< what it is
+    ExprOp op = ExprOp::None; ///< of expressions with an operator
     Type type;
     bool varying = true; ///< by declaration and operands; the IR infers more
     Place place;
-    bool handle = false; ///< String: a handle, no text: null (empty), or what RSL has names for, "(this)", "(light)"
-    int height = 1;      ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
-    double number = 0;
-    std::string text; ///< String; callee name before binding
-    Symbol* symbol = nullptr;
-    std::vector<ExprPtr> args;
+    bool handle = false;         ///< String: a handle, no text: null (empty), or what RSL has names for, "(this)", "(light)"
+    int height = 1;              ///< of this tree; never above limits::kTreeHeight, so recursion over it is safe
+    double number = 0;           ///< of Number
+    std::string text;            ///< String; callee name before binding
+    Symbol* symbol = nullptr;    ///< of Variable; owned by shader or function
+    std::vector<ExprPtr> args;   ///< operands, arguments or components
     ExprPtr space;               ///< Tuple, MatrixTuple, Cast
     ExprPtr channel;             ///< texture-like calls
     std::vector<NamedArg> pairs; ///< token/value pairs of calls
+    /// What a call is bound to, by the checker; null: something else.
     const Shadeop* shadeop = nullptr;
     const Signature* signature = nullptr;
     Function* function = nullptr; ///< user's function, or the RSL body of a Lowering::Rsl shadeop (then shadeop is set too)
@@ -155,8 +158,8 @@ enum class StmtKind : uint8_t {
 
 /// A statement.
 struct Stmt {
-    StmtKind kind{};
-    Place place;
+    StmtKind kind{};           ///< what it is
+    Place place;               ///< of its first token
     std::vector<StmtPtr> body; ///< Block: statements. Others: body[0]; For: init expr statements are exprs below
     StmtPtr elseBody;          ///< If, Gather
     ExprPtr condition;         ///< If, While, For
@@ -166,27 +169,27 @@ struct Stmt {
     /// Declare: one symbol each, with optional initialisers.
     struct Declarator {
         Symbol* symbol;
-        ExprPtr init;
+        ExprPtr init; ///< null: none
     };
     std::vector<Declarator> declarators;
-    std::vector<ExprPtr> exprs; ///< light statements
-    ExprPtr category;
-    std::vector<NamedArg> pairs;
+    std::vector<ExprPtr> exprs;     ///< light statements
+    ExprPtr category;               ///< of Illuminance and Gather; null: none
+    std::vector<NamedArg> pairs;    ///< of Illuminance and Gather
     Function* definition = nullptr; ///< Declare: the place of a nested function's definition (no declarators)
 };
 
 /// A function of the shader, or a method of a class or a structure.
 struct Function {
-    std::string name;
-    Type result;
-    std::vector<Symbol*> parameters;
+    std::string name;                ///< as declared; methods without the class
+    Type result;                     ///< Void: none
+    std::vector<Symbol*> parameters; ///< in their order
     std::vector<ExprPtr>
         defaults; ///< of a method: what a parameter is that a call leaves out; empty, or null where there is none
-    StmtPtr body;
-    std::vector<std::unique_ptr<Symbol>> symbols; ///< owns parameters and locals
-    std::vector<std::unique_ptr<Function>> nested;
+    StmtPtr body; ///< a Block
+    std::vector<std::unique_ptr<Symbol>> symbols;  ///< owns parameters and locals
+    std::vector<std::unique_ptr<Function>> nested; ///< functions defined in it
     bool anywhere = false; ///< a method that only other shaders call: of which kind these are is not known
-    Place place;
+    Place place;           ///< of the definition
 };
 
 /// What the light() of a class is called by now where it gave nothing and the samples of the class light instead.
@@ -194,25 +197,25 @@ inline constexpr const char* kReplacedLight = "__light";
 
 /// A parameter that scenes set.
 struct ShaderParameter {
-    Symbol* symbol = nullptr;
-    ExprPtr defaultValue;
+    Symbol* symbol = nullptr;  ///< its variable
+    ExprPtr defaultValue;      ///< null: zero, or of a member
     std::string defaultText{}; ///< the default as the shader writes it, macros expanded; "" where there is none
 };
 
 /// A member of a structure. Those of members that are structures are members of these.
 struct StructMember {
-    std::string name;
-    Type type;
-    Storage storage = Storage::Unspecified;
+    std::string name;                       ///< as declared
+    Type type;                              ///< as declared
+    Storage storage = Storage::Unspecified; ///< as declared
     ExprPtr init; ///< not checked: its names are those where a variable of the structure is declared; null: zero
-    Place place;
+    Place place;  ///< of the declaration
 };
 
 /// A structure as the shader declares it.
 struct StructType {
     /// A method, by the place of its definition.
     struct Method {
-        std::string name;
+        std::string name; ///< without the structure
         Place place;
     };
     std::string name;
@@ -220,20 +223,20 @@ struct StructType {
     std::vector<Method> methods; ///< in the order of the text; they are functions of the program, called "Structure->method"
     int base = -1;               ///< the structure it extends, by its number in Program::structs; its members come first
     std::string text;            ///< the definition as written: a repeated, equal one is the same structure
-    Place place;
+    Place place;                 ///< of the definition
 };
 
 /// A shader, or a class as one of the kinds of shaders that it can be.
 struct Shader {
-    ShaderKind kind{};
-    bool object = false;           ///< made from a class: the body begins with the members, then the methods
-    std::set<std::string> publics; ///< members and methods of a class that other shaders see
-    std::string name;
-    std::vector<ShaderParameter> parameters;
-    StmtPtr body;
-    std::vector<std::unique_ptr<Symbol>> symbols; ///< owns parameters, locals, and the globals used
-    std::vector<std::unique_ptr<Function>> nested;
-    Place place;
+    ShaderKind kind{};                             ///< surface, light, ...
+    bool object = false;                           ///< made from a class: the body begins with the members, then the methods
+    std::set<std::string> publics;                 ///< members and methods of a class that other shaders see
+    std::string name;                              ///< of the shader or class
+    std::vector<ShaderParameter> parameters;       ///< in their order
+    StmtPtr body;                                  ///< the statements
+    std::vector<std::unique_ptr<Symbol>> symbols;  ///< owns parameters, locals, and the globals used
+    std::vector<std::unique_ptr<Function>> nested; ///< functions defined in it
+    Place place;                                   ///< of the definition
     /// `#pragma annotation` key/value pairs, in order.
     std::vector<std::pair<std::string, std::string>> annotations;
 };
@@ -260,12 +263,12 @@ struct Program {
 
 /// What preprocessing and checking depend on besides the text.
 struct FrontOptions {
-    std::vector<std::string> includePaths;
+    std::vector<std::string> includePaths; ///< for #include, in order
     /// Whose predefined macros there are: "prman", "3delight" (also when empty), "aqsis", "bmrt", ... "rispec" has none, and
     /// rispecSpecular.
     std::string dialect;
     bool rispecSpecular = false; ///< specular() and specularbrdf() have the exponent that RISpec prints (shadeops/specular.h)
-    std::vector<std::pair<std::string, std::string>> defines;
+    std::vector<std::pair<std::string, std::string>> defines; ///< macros: name and text
     PluginFinder plugin;      ///< empty: code from outside is not run, and `plugin "name"` is an error that says so
     bool lint = false;        ///< warn about unused, uninitialised and the like, too (lint.h)
     bool keepWritten = false; ///< Program::written
@@ -280,11 +283,11 @@ std::unique_ptr<Program> compileText(const std::string& text, const std::string&
 
 /// A predefined variable (RISpec 3.2, section 12) in one kind of shader.
 struct GlobalVariable {
-    const char* name;
-    Type type;
-    bool uniform;
-    bool writable;
-    const char* doc;
+    const char* name; ///< as shaders write it
+    Type type;        ///< its type
+    bool uniform;     ///< the same at all points
+    bool writable;    ///< shaders of the kind may set it
+    const char* doc;  ///< for the manual
 };
 /// All predefined variables of a kind of shader.
 std::span<const GlobalVariable> globalVariables(ShaderKind);

@@ -48,7 +48,7 @@ void readBorrowedWords(SourceSet& sources, Preprocessed& p) {
     for (size_t i = 0; i < tokens.size(); ++i)
         if (isOneOf(tokens[i], {"true", "false"}))
             ownTruth |= isOneOf(at(i + 1), {"=", "(", "["}) || (i > 0 && isType(tokens[i - 1]));
-    std::set<std::string_view> said;
+    std::set<std::string_view> reported;
     for (size_t i = 0; i < tokens.size(); ++i) {
         Token& t = tokens[i];
         if (t.kind != Tok::Identifier) continue;
@@ -59,7 +59,7 @@ void readBorrowedWords(SourceSet& sources, Preprocessed& p) {
             const bool begins = i == 0 || isOneOf(tokens[i - 1], {";", "{", "}", "(", ",", "uniform", "varying", "output",
                                                                   "public", "private", "constant", "const", "extern"});
             if (!begins) continue;
-            if (said.insert(t.text).second) sources.report(t.place, msg::kBorrowedType(t.text));
+            if (reported.insert(t.text).second) sources.report(t.place, msg::kBorrowedType(t.text));
             t.text = "float";
         }
     }

@@ -14,6 +14,7 @@ namespace alpenglow::rsl::front {
 /// Checks one unit; used once.
 class Checker {
 public:
+    /// u: is taken apart; p: receives what is checked.
     Checker(SourceSet& s, Unit& u, Program& p) : sources_(s), main_(u), program_(p), structures_(p.structs) {}
     /// Checks all shaders and functions and moves them to the program. Errors are in the set.
     void run();

@@ -29,7 +29,7 @@ private:
         if (e.kind != ExprKind::String || e.text.empty()) return;
         std::string lower = e.text;
         std::transform(lower.begin(), lower.end(), lower.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-        if (std::find(spaces().begin(), spaces().end(), lower) != spaces().end() || !said_.insert(e.text).second) return;
+        if (std::find(spaces().begin(), spaces().end(), lower) != spaces().end() || !reported_.insert(e.text).second) return;
         const std::string near = nearestName(lower, spaces());
         std::string hint = near.empty() ? "there are:" : "did you mean \"" + near + "\"?";
         for (const std::string& s : spaces())
@@ -38,7 +38,7 @@ private:
     }
 
     SourceSet& sources_;
-    std::set<std::string> said_;
+    std::set<std::string> reported_;
 };
 
 } // namespace

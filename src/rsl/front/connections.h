@@ -22,6 +22,6 @@ struct Connected {
     bool operator==(const Connected&) const = default;
 };
 
-using Connections = std::map<ConnectionPlace, Connected>;
+using Connections = std::map<ConnectionPlace, Connected>; ///< by place: which output is connected
 
 } // namespace alpenglow::rsl

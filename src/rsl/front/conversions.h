@@ -16,8 +16,8 @@ inline constexpr int kConversion = 1 << 8;          ///< the least that is a con
 inline constexpr int kBroadcast = 16 * kConversion; ///< a number becomes a tuple of three alike
 inline constexpr int kLastResort = 1 << 18; ///< Shadeop::lastResort; a tuple where arithmetic with a number makes a call a float
 inline constexpr int kCompared = 1 << 19;   ///< a tuple is compared with a number
-inline constexpr int kNever = 1 << 28;
-inline constexpr int kBases = 11;
+inline constexpr int kNever = 1 << 28;      ///< cost of a conversion that is not allowed
+inline constexpr int kBases = 11;           ///< number of values of Base
 
 /// Cost of an implicit conversion; 0 for the same type, kNever if there is none.
 int implicitCost(Base from, Base to);
@@ -28,8 +28,8 @@ int conditionCost(Base from);
 
 /// One meaning of a binary operator.
 struct Operation {
-    Base operand; ///< both operands are brought to this type
-    Base result;
+    Base operand;          ///< both operands are brought to this type
+    Base result;           ///< of the result
     int cost;              ///< of doing so
     bool promotes = false; ///< one is a number, the other a tuple
 };

@@ -52,6 +52,7 @@ std::string lower(std::string_view s) {
 
 const ShippedHeader* shippedHeader(std::string_view name) {
     std::string wanted = lower(name);
+    if (constexpr std::string_view kOfK3d = "k3d_"; wanted.starts_with(kOfK3d)) wanted.erase(0, kOfK3d.size());
     for (const OtherName& o : kOtherNames)
         if (o.name == wanted) wanted = o.header;
     for (const ShippedHeader& h : shippedHeaders())
@@ -87,5 +88,7 @@ std::string_view dialectOfFunction(std::string_view function) {
 bool dialectRispecSpecular(std::string_view dialect) { return lower(dialect) == "rispec"; }
 
 bool dialectLitPoint(std::string_view dialect) { return lower(dialect) == "pixie"; }
+
+float dialectShadowBias(std::string_view dialect) { return lower(dialect) == "aqsis" ? 0.f : .225f; }
 
 } // namespace alpenglow::rsl::front

@@ -27,5 +27,7 @@ std::string_view dialectOfFunction(std::string_view function);
 bool dialectRispecSpecular(std::string_view dialect);
 /// Whether P of a light shader is the point being lit, as Ps is.
 bool dialectLitPoint(std::string_view dialect);
+/// The bias of shadow() where neither a scene nor a shader sets one, in world units.
+float dialectShadowBias(std::string_view dialect);
 
 } // namespace alpenglow::rsl::front

@@ -10,8 +10,8 @@ namespace alpenglow::rsl {
 struct StructSummary {
     /// A member, with the class and brackets in the type.
     struct Member {
-        std::string type, name;
-        Place place;
+        std::string type, name; ///< as text
+        Place place;            ///< of the declaration
     };
     std::string name;
     std::vector<Member> members;

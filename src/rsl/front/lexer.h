@@ -16,11 +16,11 @@ enum class Tok : uint8_t {
 
 /// A token; its text lives as long as the SourceSet.
 struct Token {
-    Tok kind = Tok::End;
+    Tok kind = Tok::End;    ///< what it is
     bool lineStart = false; ///< first on its line
     bool space = false;     ///< white space before it
     bool noExpand = false;  ///< a macro's name inside its own expansion
-    Place place;
+    Place place;            ///< of its first byte
     std::string_view text;
     /// Whether it is this word or sign; never true for numbers and strings.
     bool is(std::string_view s) const { return text == s && (kind == Tok::Punct || kind == Tok::Identifier); }
@@ -29,6 +29,7 @@ struct Token {
 /// Reads one text from its beginning to its end.
 class Lexer {
 public:
+    /// file: of the SourceSet.
     Lexer(SourceSet&, int file);
     /// Over another text, which must stay alive; places name `file`.
     Lexer(SourceSet&, int file, std::string_view text);
@@ -36,6 +37,7 @@ public:
     Token next();
     /// The next token, which next() then returns; valid until next().
     const Token& peek();
+    /// Index of the file in the SourceSet.
     int file() const { return file_; }
     /// Later places count `line` for the line after the current one, under file index `file` (#line).
     void relocate(int file, int delta) {
@@ -43,6 +45,7 @@ public:
         if (peeked_) ahead_.place = {file, ahead_.place.line - delta_ + delta, ahead_.place.column};
         delta_ = delta;
     }
+    /// The line of the next token.
     int line() const { return line_; }
 
 private:

@@ -75,15 +75,15 @@ void mixIn(ClassDefinition& to, ClassDefinition from) {
     for (const auto& f : own.nested) has.insert(f->name);
     for (const auto& s : own.body->body)
         for (const auto& d : s->declarators) has.insert(d.symbol->name);
-    const auto lacks = [&](const std::string& name) { return !has.count(name); };
+    const auto missing = [&](const std::string& name) { return !has.count(name); };
 
-    std::erase_if(added.parameters, [&](const ShaderParameter& p) { return !lacks(p.symbol->name); });
+    std::erase_if(added.parameters, [&](const ShaderParameter& p) { return !missing(p.symbol->name); });
     own.parameters.insert(own.parameters.begin(), std::make_move_iterator(added.parameters.begin()),
                           std::make_move_iterator(added.parameters.end()));
     std::vector<StmtPtr> members, methods;
     for (StmtPtr& s : added.body->body) {
-        std::erase_if(s->declarators, [&](const auto& d) { return !lacks(d.symbol->name); });
-        if (s->definition ? lacks(s->definition->name) : !s->declarators.empty())
+        std::erase_if(s->declarators, [&](const auto& d) { return !missing(d.symbol->name); });
+        if (s->definition ? missing(s->definition->name) : !s->declarators.empty())
             (s->definition ? methods : members).push_back(std::move(s));
     }
     // members precede methods
@@ -92,12 +92,12 @@ void mixIn(ClassDefinition& to, ClassDefinition from) {
     };
     insert(std::ranges::find_if(own.body->body, [](const StmtPtr& s) { return s->definition; }), methods);
     insert(own.body->body.begin(), members);
-    std::erase_if(added.nested, [&](const auto& f) { return !lacks(f->name); });
+    std::erase_if(added.nested, [&](const auto& f) { return !missing(f->name); });
     own.nested.insert(own.nested.begin(), std::make_move_iterator(added.nested.begin()),
                       std::make_move_iterator(added.nested.end()));
     for (auto& s : added.symbols) own.symbols.push_back(std::move(s));
     for (const std::string& p : from.publics)
-        if (lacks(p)) to.publics.insert(p);
+        if (missing(p)) to.publics.insert(p);
 }
 
 } // namespace alpenglow::rsl::front

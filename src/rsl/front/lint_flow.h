@@ -11,6 +11,7 @@ namespace alpenglow::rsl::front {
 /// What functions read of the light that shines where they are called: the first such variable; null: none.
 using LightReads = std::map<const Function*, const Symbol*>;
 
+/// What is known of a body beside its text.
 struct FlowRules {
     const std::set<const Symbol*>& ignored; ///< variables that may get a value at any time
     bool surface;                           ///< the body of a surface shader

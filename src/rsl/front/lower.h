@@ -11,6 +11,7 @@
 
 namespace alpenglow::rsl::front {
 
+/// Types of statements, and of numbers that the pass makes.
 inline constexpr Type kNone{Base::Void, 0};
 inline constexpr Type kNumber{Base::Float, 0};
 inline constexpr const char* kElement = "element"; ///< Expr::text of an index into members of an array of structures
@@ -19,6 +20,7 @@ inline constexpr const char* kElement = "element"; ///< Expr::text of an index i
 ExprPtr use(Symbol*, Place);
 /// left = right of the same type.
 ExprPtr assign(ExprPtr left, ExprPtr right, Place);
+/// A number.
 ExprPtr floatOf(double, Place);
 /// What stands in the place of an error.
 ExprPtr broken(Place);
@@ -27,11 +29,12 @@ ExprPtr choose(ExprPtr condition, ExprPtr yes, ExprPtr no, Place);
 /// Zero, "" or null.
 ExprPtr zeroOf(Base, Place);
 /// `varying` and the height from the operands.
-void settle(Expr&);
+void inferFromOperands(Expr&);
 
 /// The pass; used once.
 class Lowering {
 public:
+    /// All outlive the pass.
     Lowering(Program& p, SourceSet& s, Checker& c) : program_(p), sources_(s), checker_(c), structures_(p.structs) {}
     /// Lowers the whole program.
     void run();

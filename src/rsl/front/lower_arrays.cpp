@@ -28,7 +28,7 @@ ExprPtr joined(ExprOp op, ExprPtr a, ExprPtr b) {
     e->type = kNumber;
     adopt(*e, std::move(a));
     adopt(*e, std::move(b));
-    settle(*e);
+    inferFromOperands(*e);
     return e;
 }
 
@@ -50,7 +50,7 @@ ExprPtr shipped(const char* name, std::vector<ExprPtr> args, Place place) {
     if (s == e->shadeop->signatures.end()) return e; // of an argument that is wrong
     e->signature = &*s;
     e->type = s->result;
-    settle(*e);
+    inferFromOperands(*e);
     return e;
 }
 
@@ -78,7 +78,7 @@ ExprPtr indexed(ExprPtr array, ExprPtr at) {
     e->type = array->type.element();
     adopt(*e, std::move(array));
     adopt(*e, std::move(at));
-    settle(*e);
+    inferFromOperands(*e);
     return e;
 }
 
@@ -97,7 +97,7 @@ ExprPtr zeroOf(Base base, Place place) {
     auto e = node(ExprKind::Cast, place);
     e->type = {base, 0};
     adopt(*e, std::move(zero));
-    settle(*e);
+    inferFromOperands(*e);
     return e;
 }
 
@@ -165,7 +165,7 @@ ExprPtr Lowering::whole(ExprPtr e) {
     auto list = node(ExprKind::ArrayList, e->place);
     list->type = e->type;
     for (int k = 0; k < int(e->number); ++k) adopt(*list, partAt(clone(*e), floatOf(k, e->place), 0));
-    settle(*list);
+    inferFromOperands(*list);
     return list;
 }
 
@@ -339,7 +339,7 @@ void Lowering::listOf(Expr& e, List& pre, List& out) {
                 adopt(*lists[i], clone(*lists[i]->args[lists[i]->args.size() - each]));
         const int fixed = Structures::flatLength(want.array, all[i].type.array);
         lists[i]->type = {all[i].type.base, fixed > 0 ? fixed : std::max(1, int(lists[i]->args.size()))};
-        settle(*lists[i]);
+        inferFromOperands(*lists[i]);
         out.push_back(std::move(lists[i]));
     }
 }

@@ -8,7 +8,7 @@
 
 namespace alpenglow::rsl::front {
 
-void settle(Expr& e) {
+void inferFromOperands(Expr& e) {
     e.varying = false;
     for (const auto& a : e.args) {
         e.varying |= a->varying;
@@ -33,7 +33,7 @@ ExprPtr assign(ExprPtr left, ExprPtr right, Place place) {
     const bool plain = left->kind == ExprKind::Variable;
     adopt(*e, std::move(left));
     adopt(*e, std::move(right));
-    settle(*e);
+    inferFromOperands(*e);
     if (plain) e->varying = varying;
     return e;
 }
@@ -52,7 +52,7 @@ ExprPtr choose(ExprPtr condition, ExprPtr yes, ExprPtr no, Place place) {
     adopt(*c, std::move(condition));
     adopt(*c, std::move(yes));
     adopt(*c, std::move(no));
-    settle(*c);
+    inferFromOperands(*c);
     return c;
 }
 
@@ -91,7 +91,7 @@ void Lowering::flattenElement(Expr& e, List& pre, List& out) {
         i->text = kElement;
         adopt(*i, std::move(b));
         adopt(*i, clone(*index));
-        settle(*i);
+        inferFromOperands(*i);
         out.push_back(std::move(i));
     }
 }
@@ -108,7 +108,7 @@ void Lowering::flattenConditional(Expr& e, List& pre, List& out) {
         test->type = {Base::Bool, 0};
         adopt(*test, use(t, place));
         adopt(*test, floatOf(0, place));
-        settle(*test);
+        inferFromOperands(*test);
         return test;
     };
     List yes, no, yesFirst, noFirst;
@@ -142,7 +142,7 @@ void Lowering::flattenConditional(Expr& e, List& pre, List& out) {
         ExprPtr list = node(ExprKind::ArrayList, place);
         list->type = all[i].type;
         for (size_t k = 0; k < first.size(); ++k) adopt(*list, either(std::move(first[k]), std::move(second[k])));
-        settle(*list);
+        inferFromOperands(*list);
         out.push_back(std::move(list));
     }
 }
@@ -360,7 +360,7 @@ void Lowering::sequence(ExprPtr& e, List pre) {
     all->type = e->type;
     for (auto& p : pre) adopt(*all, std::move(p));
     adopt(*all, std::move(e));
-    settle(*all);
+    inferFromOperands(*all);
     e = std::move(all);
 }
 

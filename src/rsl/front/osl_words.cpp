@@ -50,7 +50,7 @@ private:
     }
     /// Skips metadata in [[ ]]. True if they have lockgeom = 0.
     bool skipMetadata() {
-        std::string said;
+        std::string reported;
         for (int depth = 0; at_ < text_.size();) {
             if (text_[at_] == '"') {
                 step();
@@ -58,11 +58,11 @@ private:
                 continue;
             }
             depth += text_[at_] == '[' ? 1 : text_[at_] == ']' ? -1 : 0;
-            if (!std::isspace(static_cast<unsigned char>(text_[at_]))) said += text_[at_];
+            if (!std::isspace(static_cast<unsigned char>(text_[at_]))) reported += text_[at_];
             step();
             if (depth == 0) break;
         }
-        return said.find("lockgeom=0") != std::string::npos;
+        return reported.find("lockgeom=0") != std::string::npos;
     }
     void take(OslWord& w, bool first) {
         static constexpr std::array<std::string_view, 19> kSigns{

@@ -9,12 +9,13 @@ namespace alpenglow::rsl::front {
 
 /// One word and where it stands.
 struct OslWord {
+    /// What a word is. Sign: an operator or bracket.
     enum class Kind : uint8_t { Name, Number, String, Sign, Directive };
-    Kind kind;
-    std::string text;
-    int lines = 0; ///< that begin between the word before and this
-    int line = 0, column = 0;
-    bool bound = false; ///< [[int lockgeom = 0]] follows: the parameter takes a variable of the primitive
+    Kind kind;                ///< what it is
+    std::string text;         ///< as written
+    int lines = 0;            ///< that begin between the word before and this
+    int line = 0, column = 0; ///< of its first byte, from 1
+    bool bound = false;       ///< [[int lockgeom = 0]] follows: the parameter takes a variable of the primitive
 };
 
 /// Comments and [[metadata]] left out, but for lockgeom.

@@ -17,16 +17,16 @@ struct ClassDefinition {
 /// `plugin "name";`
 struct PluginUse {
     std::string name;
-    Place place;
+    Place place; ///< of the word plugin
 };
 
 /// What one text declares, unchecked.
 struct Unit {
-    std::vector<PluginUse> plugins;
-    std::vector<std::unique_ptr<Shader>> shaders;
-    std::vector<std::unique_ptr<Function>> functions;
-    std::vector<ClassDefinition> classes;
-    std::vector<StructType> structs;
+    std::vector<PluginUse> plugins;                              ///< in the order of the text
+    std::vector<std::unique_ptr<Shader>> shaders;                ///< in the order of the text
+    std::vector<std::unique_ptr<Function>> functions;            ///< outside of shaders
+    std::vector<ClassDefinition> classes;                        ///< in the order of the text
+    std::vector<StructType> structs;                             ///< outside of shaders
     std::vector<std::vector<std::unique_ptr<Function>>> methods; ///< of each structure, until they are functions
     bool incomplete = false; ///< text is missing (an include that was not found): it may have declared unknown names
     std::unordered_set<std::string> skipped; ///< names in text that was skipped after an error, which may have declared them
@@ -41,6 +41,7 @@ struct Unit {
 /// Builds the syntax tree of a unit from one or more texts.
 class Parser {
 public:
+    /// s: receives the texts.
     explicit Parser(SourceSet& s) : sources_(s) {}
     /// Reads one more text into the unit; it sees the structures of those before. Never fails: errors are in the set, and what
     /// could be read is in the unit.

@@ -19,7 +19,7 @@ inline constexpr const char* kPluginSymbol = "rslplugin:";
 
 /// A loaded plug-in and the functions that shaders can call.
 struct Plugin {
-    std::string name, path;
+    std::string name, path;         ///< as shaders name it; the file
     std::vector<Shadeop> functions; ///< Lowering::Service, sorted by name, one for each name
     /// The function of that name; null if there is none.
     const Shadeop* find(const std::string& function) const {

@@ -7,20 +7,20 @@ namespace alpenglow::rsl::front {
 
 /// One `#pragma annotation`.
 struct Annotation {
-    std::string key, value;
-    size_t token = 0; ///< index of the token that follows it
+    std::string key, value; ///< as written, without quotes
+    size_t token = 0;       ///< index of the token that follows it
 };
 
 /// A text behind the preprocessor.
 struct Preprocessed {
-    std::vector<Token> tokens; ///< the last one is Tok::End
-    std::vector<Annotation> annotations;
-    std::vector<std::string> dependencies;
-    bool incomplete = false; ///< an include was missing: unknown names later on may be its fault
+    std::vector<Token> tokens;             ///< the last one is Tok::End
+    std::vector<Annotation> annotations;   ///< in the order of the text
+    std::vector<std::string> dependencies; ///< paths of the files that were included
+    bool incomplete = false;               ///< an include was missing: unknown names later on may be its fault
     /// An include that was not found.
     struct Missing {
-        Place place;
-        std::string name;
+        Place place;      ///< of the directive
+        std::string name; ///< as written
     };
     std::vector<Missing> missing; ///< includes that were not found; whether that is an error depends on what is missed later
     /// The text after macros, one line for each line that gave a token.

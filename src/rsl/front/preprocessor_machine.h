@@ -9,26 +9,28 @@
 
 namespace alpenglow::rsl::front {
 
+/// A macro that is defined.
 struct Macro {
-    std::string_view name;
-    bool function = false, variadic = false;
-    std::vector<std::string_view> parameters;
-    std::vector<Token> body;
-    int active = 0; ///< expansions of it that are being read
+    std::string_view name;                    ///< its text lives as long as the SourceSet
+    bool function = false, variadic = false;  ///< it has brackets; its last parameter is "..."
+    std::vector<std::string_view> parameters; ///< names
+    std::vector<Token> body;                  ///< tokens that replace it
+    int active = 0;                           ///< expansions of it that are being read
+    /// Index of a parameter; -1: there is none of that name.
     int parameter(std::string_view n) const {
         for (size_t i = 0; i < parameters.size(); ++i)
             if (parameters[i] == n) return int(i);
         return -1;
     }
 };
-using MacroPtr = std::shared_ptr<Macro>;
+using MacroPtr = std::shared_ptr<Macro>; ///< shared with expansions that outlast #undef
 
 /// Where tokens come from: a file, or the expansion of a macro.
 struct Frame {
-    std::unique_ptr<Lexer> lexer;
-    size_t conditions = 0; ///< open #if when the file began
-    std::vector<Token> list;
-    size_t at = 0;
+    std::unique_ptr<Lexer> lexer; ///< of a file; null: an expansion
+    size_t conditions = 0;        ///< open #if when the file began
+    std::vector<Token> list;      ///< of an expansion
+    size_t at = 0;                ///< next token of `list`
     MacroPtr macro;
     bool barrier = false; ///< reading stops here until the frame is taken away
 };
@@ -36,8 +38,10 @@ struct Frame {
 /// Runs over one main text and what it includes; used once.
 class Preprocessor {
 public:
+    /// Both outlive this.
     Preprocessor(SourceSet& s, const FrontOptions& o) : sources_(s), options_(o) {}
 
+    /// main: a file of the SourceSet.
     Preprocessed run(int main) {
         pushFile(main);
         std::string predefined = "#define ALPENGLOW 1\n";

@@ -116,21 +116,21 @@ std::string OutputName::text() const {
     return elementOf(std::move(t), element);
 }
 
-std::optional<HeardOutput> HeardOutput::parse(const std::string& text) {
-    HeardOutput h;
+std::optional<QueriedOutput> QueriedOutput::parse(const std::string& text) {
+    QueriedOutput h;
     int varying = 0;
     if (std::sscanf(text.c_str(), "%d %d %d", &h.kind, &h.length, &varying) != 3) return std::nullopt;
     h.varying = varying != 0;
     return h;
 }
-std::string HeardOutput::text() const {
+std::string QueriedOutput::text() const {
     return std::to_string(kind) + " " + std::to_string(length) + " " + std::to_string(int(varying));
 }
 
-HeardMember HeardMember::parse(const std::string& text) {
+QueriedMember QueriedMember::parse(const std::string& text) {
     return {std::atoi(text.c_str()), text.find("length") != std::string::npos};
 }
-std::string HeardMember::text() const { return std::to_string(count) + (length ? " length" : ""); }
+std::string QueriedMember::text() const { return std::to_string(count) + (length ? " length" : ""); }
 
 std::string lengthParameter(std::string_view array) { return std::string(array) + "[]"; }
 bool isLengthParameter(std::string_view name) { return name.ends_with("[]"); }

@@ -14,6 +14,7 @@ inline constexpr char kSideNormal[] = "__side";
 
 /// ir::Input::name: what fills an input.
 struct InputName {
+    /// Where the value comes from.
     enum class Kind : uint8_t {
         Variable,     ///< a predefined variable: "P"
         Parameter,    ///< a parameter of the shader: "param:Kd"
@@ -21,9 +22,9 @@ struct InputName {
         Sent,         ///< what a gather() sends to a parameter: "sent:name"; zero where there is no `length`
         Space         ///< the matrix between two spaces: "space:object>current"
     };
-    Kind kind = Kind::Variable;
-    std::string name;    ///< of the variable or parameter; of a member of a class without "this->"
-    bool member = false; ///< Displacement: what the displacement() of a class left in a member, "displacement:this->NAME"
+    Kind kind = Kind::Variable; ///< where it comes from
+    std::string name;           ///< of the variable or parameter; of a member of a class without "this->"
+    bool member = false;        ///< Displacement: what the displacement() of a class left in a member, "displacement:this->NAME"
     /// Of a member the number of elements: "displacement:this->NAME#". Sent: one more than the elements that came, 2 for a
     /// value that is no array, 0 where nothing was sent: "sent:NAME#".
     bool length = false;
@@ -40,27 +41,30 @@ struct InputName {
     static InputName space(std::string_view from, std::string_view to) {
         return {Kind::Space, {}, false, false, std::string(from), std::string(to)};
     }
-    /// Under it the caller of the compiler says what there is, too: KernelOptions::stringParameters (HeardOutput, HeardMember).
+    /// Under it the caller of the compiler says what there is, too: KernelOptions::stringParameters (QueriedOutput,
+    /// QueriedMember).
     static InputName displacement(std::string_view name) { return {Kind::Displacement, std::string(name), false, false, {}, {}}; }
     /// A member that displacement() leaves, or its length.
     static InputName left(std::string_view member, bool length = false) {
         return {Kind::Displacement, std::string(member), true, length, {}, {}};
     }
+    /// The name as the IR has it.
     std::string text() const;
     bool operator==(const InputName&) const = default;
 };
 
 /// KernelOptions::outputs, ir::OutputSlot::name.
 struct OutputName {
+    /// What is written.
     enum class What : uint8_t {
         Value, ///< "Ci", "list[1]", "param:Kd"
         Du,    ///< its derivative by u: "Du:P", "Du:param:height"
-        Dv,
+        Dv,    ///< by v
         Given, ///< of an output that outputchannel() makes when the shader runs: 1 where it was made, "given:NAME"
         Slope  ///< how much of a variable comes through a volume shader: "slope:Ci"
     };
-    What what = What::Value;
-    bool parameter = false; ///< "param:": any parameter; else a variable, an output parameter or a channel
+    What what = What::Value; ///< what is written
+    bool parameter = false;  ///< "param:": any parameter; else a variable, an output parameter or a channel
     bool member =
         false; ///< with `parameter`: a member of a class that displacement() leaves to its other methods, "param:this->NAME"
     bool length = false; ///< of that the number of elements, "param:this->NAME#"
@@ -68,6 +72,7 @@ struct OutputName {
     int element = -1;    ///< of an array: "list[1]"; -1: the whole
     int block = 0;       ///< of a light: the number of its illuminate or solar statement, from the second on "Cl#1"
 
+    /// Any text: a name without a prefix is a variable or channel.
     static OutputName parse(std::string_view);
     /// A variable or an output as displays name it.
     static OutputName of(std::string_view name) { return plain(What::Value, name); }
@@ -92,6 +97,7 @@ struct OutputName {
     static OutputName ofBlock(std::string_view name, int block) {
         return {What::Value, false, false, false, std::string(name), -1, block};
     }
+    /// The name as the IR has it.
     std::string text() const;
     bool operator==(const OutputName&) const = default;
 
@@ -105,19 +111,22 @@ public:
 
 /// Describes an output of the displacement shader to the surface's kernel, which may query it: the value of the string parameter
 /// InputName::displacement(NAME).
-struct HeardOutput {
+struct QueriedOutput {
     int kind = 0;         ///< ir::Kind of an element
     int length = 0;       ///< of an array; 0: none
     bool varying = false; ///< points differ
     /// Nothing for any other text.
-    static std::optional<HeardOutput> parse(const std::string&);
+    static std::optional<QueriedOutput> parse(const std::string&);
+    /// What parse() reads.
     std::string text() const;
 };
 /// The same of a member that displacement() leaves: InputName::left(NAME).
-struct HeardMember {
+struct QueriedMember {
     int count = 0;       ///< elements of an array; 0: none
     bool length = false; ///< their number is an input, too
-    static HeardMember parse(const std::string&);
+    /// As QueriedOutput, for names that text() makes.
+    static QueriedMember parse(const std::string&);
+    /// What parse() reads.
     std::string text() const;
 };
 
@@ -131,8 +140,9 @@ bool isLengthParameter(std::string_view name);
 
 /// A pair of a call site: ir::Site::names.
 struct PairName {
+    /// What the pair is for.
     enum class Kind : uint8_t {
-        Plain,
+        Plain,  ///< of the call itself
         Send,   ///< a value for a parameter of other shaders: "send:light:NAME", "send:surface:NAME"
         Surface ///< the value of an output of the surface, for lights that ask: "surface:NAME"
     };
@@ -140,8 +150,8 @@ struct PairName {
     enum class To : uint8_t { Light, Surface, Displacement, Volume };
     Kind kind = Kind::Plain;
     std::string name;
-    int element = -1; ///< Send: of an array that is sent element by element
-    To to = To::Light;
+    int element = -1;    ///< Send: of an array that is sent element by element
+    To to = To::Light;   ///< for whom it is sent
     bool length = false; ///< Send: how many elements of the array count, "send:surface:NAME#"
     /// Reads a name; whatever has no prefix is Plain.
     static PairName parse(std::string_view);
@@ -151,6 +161,7 @@ struct PairName {
     }
     /// The value of an output for lights that query it.
     static PairName surface(std::string_view name) { return {Kind::Surface, std::string(name), -1, To::Light, false}; }
+    /// The name as the IR has it.
     std::string text() const;
 };
 // Pairs that the compiler adds to a call; shaders do not write them.
@@ -181,6 +192,7 @@ bool isElementResult(std::string_view name);
 inline constexpr char kNonDiffuse[] = "__nondiffuse", kNonSpecular[] = "__nonspecular", kCategory[] = "__category";
 inline constexpr char kImportanceSample[] = "__importancesample";
 inline constexpr char kGroup[] = "__group"; ///< of a light: the name of its group in light path expressions
+/// Parameters of a displacement shader: its bound, and the space of that.
 inline constexpr char kBoundSize[] = "__displacementbound_sphere", kBoundSpace[] = "__displacementbound_coordinatesystem";
 /// Of a light that sends through generateSamples(): ways and light of its samples, and whether their light is traced.
 inline constexpr char kSentL[] = "__sentL", kSentCl[] = "__sentCl", kSentShadows[] = "__sentShadows";
@@ -206,20 +218,22 @@ inline constexpr std::string_view kKeptChannels[] = {"light:", "local:"};
 /// A name split in two.
 struct ChannelName {
     std::string name;
-    bool kept = false;
+    bool kept = false; ///< it was "light:" or "local:"
+    /// Any text.
     static ChannelName parse(std::string_view);
 };
 
 /// Handles that getlights() gives: the number of a light among those of the frame, and what its declaration called it.
 struct LightHandle {
     int light = -1;
-    std::string declared;
+    std::string declared; ///< its handle; may be ""
     /// Nothing for any other handle.
     static std::optional<LightHandle> parse(std::string_view);
+    /// What parse() reads.
     std::string text() const;
 };
-/// What "%h" and messages call a handle: lights and co-shaders by the handle of their declaration, no shader "<null>" (seed,
-/// format()).
+/// What "%h" of format() and messages call a handle: lights and co-shaders by the handle of their declaration, no shader
+/// "<null>".
 std::string shownHandle(const std::string& handle);
 
 } // namespace alpenglow::rsl

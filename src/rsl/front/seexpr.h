@@ -9,7 +9,7 @@ namespace alpenglow::rsl::front {
 
 /// A variable that the scene gives an expression.
 struct SeExprVariable {
-    std::string name;
+    std::string name;   ///< without the $
     bool color = false; ///< three numbers; else one
 };
 

@@ -30,6 +30,7 @@ public:
 
     /// Notes a message: an error or a warning, as its table says. `hint` "": the message's own, if it has one.
     void report(Place, const Raised&, std::string hint = {}, std::vector<std::string> notes = {});
+    /// Number of errors so far.
     int errors() const { return errors_; }
     /// True once so many errors were found that going on is of no use.
     bool tooMany() const;

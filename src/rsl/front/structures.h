@@ -18,6 +18,7 @@ struct Leaf {
 /// The structures of a program, which must outlive this. Types that are no structures have no members.
 class Structures {
 public:
+    /// all: outlives this.
     explicit Structures(const std::vector<StructType>& all) : all_(all) {}
     /// The structure of a type; one without members for all other types.
     const StructType& of(Type) const;

@@ -128,7 +128,7 @@ std::vector<Inst*> Builder::bsdf(const Expr& written) {
     }
     for (Inst*& v : d.lobes) v = coerce(v, Kind::Float);
     place_ = e.place;
-    const bool parted = e.type.array != 0;
+    const bool inParts = e.type.array != 0;
     const auto sum = [&](const std::vector<Inst*>& parts) {
         Inst* all = parts[0];
         for (size_t i = 1; i < parts.size(); ++i) all = emit(Op::Add, Kind::Triple, {all, parts[i]});
@@ -138,7 +138,7 @@ std::vector<Inst*> Builder::bsdf(const Expr& written) {
     const std::string known = !name ? "uniform" : name->op == Op::ConstString ? name->text : "";
     const Distribution* const m = findDistribution(known);
     if (name && name->op != Op::ConstString) { // one branch a name
-        if (parted) report(e.place, msg::kBsdfPartsConstant);
+        if (inParts) report(e.place, msg::kBsdfPartsConstant);
         const std::function<Inst*(size_t)> from = [&](size_t i) -> Inst* {
             if (i == distributions().size()) return noSuchDistribution(name, e);
             const Distribution& one = distributions()[i];
@@ -153,7 +153,7 @@ std::vector<Inst*> Builder::bsdf(const Expr& written) {
         result = {zero(Kind::Triple)};
     } else {
         result = distribution(*m, d);
-        if (!parted) result = {sum(result)};
+        if (!inParts) result = {sum(result)};
         else if (m->parts == 1) report(e.place, msg::kBsdfParts(known));
     }
     // The plane of "horizon" lets through what lies on the same side of it as of the surface; a fibre has no surface.

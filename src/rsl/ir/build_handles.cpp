@@ -31,7 +31,7 @@ void Builder::complain(const Place& place, const Raised& message) {
     call(Op::Service, complaint(message), {});
 }
 
-/// What `this` is called: a co-shader by its handle, others by what they are (seed, format "%h").
+/// What `this` is called: a co-shader by its handle, others by what they are, as format "%h" prints it.
 std::string Builder::thisHandle() const {
     if (!current_.empty() && !isSelf(current_.back())) return instances_[current_.back()].binding->handle;
     return "<" + std::string(toString(shader_.kind)) + ">";

@@ -34,15 +34,15 @@ void Builder::hearMembers() {
             set(slot(s), input(key, s->type, false));
             continue;
         }
-        const HeardMember heard = HeardMember::parse(text);
-        const int count = heard.count;
+        const QueriedMember queried = QueriedMember::parse(text);
+        const int count = queried.count;
         Inst* a = get(slot(s));
         if (count < 1 || a->op != Op::ArrayNew) continue;
         Inst* from = input(key, {s->type.base, count}, false);
         if (const Lengths* known = lengths(a)) {
             const Lengths l = *known;
-            Inst* n = limitLength(a, heard.length ? input(InputName::left(parsed.name, true).text(), {Base::Float, 0}, false)
-                                                  : constant(static_cast<float>(count)));
+            Inst* n = limitLength(a, queried.length ? input(InputName::left(parsed.name, true).text(), {Base::Float, 0}, false)
+                                                    : constant(static_cast<float>(count)));
             set(l.length, n);
             set(l.reserved, runtime1("al_max_f", {get(l.reserved), n}, Kind::Float));
         }

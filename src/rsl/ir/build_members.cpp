@@ -59,7 +59,7 @@ Type Builder::typeOfMember(const Expr& e) {
 /// Reports that the shader of this turn of forHandle() lacks what is asked. This is an error when the kernel is built if the
 /// handle can mean no other shader. Otherwise (another one has it, or only the run decides, as with getlights() of a scene
 /// without lights) it is reported when the shader reaches this place with such a handle.
-void Builder::lacks(const Place& place, size_t i, const Lack& lack, const std::function<bool(size_t)>& has) {
+void Builder::reportMissing(const Place& place, size_t i, const Missing& lack, const std::function<bool(size_t)>& has) {
     if (!certain_ && isSelf(i)) return; // another shader of the handle has it
     const CoShader& c = *instances_[i].binding;
     bool another = anyHandle_ || (c.light && !certain_); // lights of other kinds may have it; these are queried at run time
@@ -68,13 +68,13 @@ void Builder::lacks(const Place& place, size_t i, const Lack& lack, const std::f
     else report(place, lack.error);
 }
 
-Builder::Lack Builder::noMember(size_t i, const std::string& name) const {
+Builder::Missing Builder::noMember(size_t i, const std::string& name) const {
     const CoShader& c = *instances_[i].binding;
     const std::string handle = shownHandle(c.handle);
     return {msg::kNoPublicMember(handle, c.shader->name, name), msg::kNoPublicMemberHere(handle, c.shader->name, name)};
 }
 
-Builder::Lack Builder::otherType(size_t i, const Symbol& has, const std::string& name, const std::string& wanted) const {
+Builder::Missing Builder::otherType(size_t i, const Symbol& has, const std::string& name, const std::string& wanted) const {
     const CoShader& c = *instances_[i].binding;
     const std::string handle = shownHandle(c.handle), type = toString(has.type);
     return {msg::kMemberType(handle, c.shader->name, name, type, wanted),
@@ -97,7 +97,7 @@ Inst* Builder::memberAccess(const Expr& e) {
             if (c.light && !(isSelf(i) && !certain_) && (!fits(i) || s->output))
                 return lightMember(leaves_.string(c.handle), leaves_.string(e.text), kind, nullptr);
             if (!fits(i)) {
-                lacks(e.place, i, s ? otherType(i, *s, e.text, toString(type)) : noMember(i, e.text), fits);
+                reportMissing(e.place, i, s ? otherType(i, *s, e.text, toString(type)) : noMember(i, e.text), fits);
                 return zero(kind);
             }
             return memberValue(i, *s);
@@ -220,7 +220,7 @@ Inst* Builder::memberArray(const Expr& e) {
             if (!from) {
                 const Symbol* s = memberOf(i, e.text);
                 const std::string wanted = "an array of " + toString(e.type.element());
-                lacks(e.place, i, s ? otherType(i, *s, e.text, wanted) : noMember(i, e.text), given);
+                reportMissing(e.place, i, s ? otherType(i, *s, e.text, wanted) : noMember(i, e.text), given);
                 return constant(0);
             }
             set(l.length, lengthOf(from));
@@ -269,9 +269,10 @@ Inst* Builder::memberLength(const Expr& e) {
             if (Inst* v = found(i)) return lengthOf(v);
             const CoShader& c = *instances_[i].binding;
             const std::string handle = shownHandle(c.handle);
-            lacks(e.place, i,
-                  {msg::kNoPublicArray(handle, c.shader->name, e.text), msg::kNoPublicArrayHere(handle, c.shader->name, e.text)},
-                  found);
+            reportMissing(
+                e.place, i,
+                {msg::kNoPublicArray(handle, c.shader->name, e.text), msg::kNoPublicArrayHere(handle, c.shader->name, e.text)},
+                found);
             return constant(0);
         },
         [&](Inst* handle) -> Inst* { // a light
@@ -316,7 +317,7 @@ Inst* Builder::memberElement(const Expr& e) {
                 return emit(Op::Select, Kind::Float, {emit(Op::LessEqual, Kind::Bool, {constant(2), at}), part(2), low});
             }
             const std::string wanted = "an array of " + toString(type);
-            lacks(e.place, i, s ? otherType(i, *s, member.text, wanted) : noMember(i, member.text), has);
+            reportMissing(e.place, i, s ? otherType(i, *s, member.text, wanted) : noMember(i, member.text), has);
             return zero(kind);
         },
         [&](Inst* handle) { return lightMember(handle, leaves_.string(member.text), kind, nullptr, at); });

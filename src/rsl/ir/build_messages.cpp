@@ -53,15 +53,15 @@ void Builder::receive(const Receiver& r, std::span<Inst* const> values, Inst* fo
 }
 
 /// displacement() of an output that the displacement shader of the primitive has: KernelOptions::stringParameters says so, as
-/// HeardOutput. It is an input of the
+/// QueriedOutput. It is an input of the
 /// kernel then, so that it has derivatives. False: the renderer is asked.
-bool Builder::heardDisplacement(const Expr& call, const std::string& name, Inst*& found) {
+bool Builder::queriedDisplacement(const Expr& call, const std::string& name, Inst*& found) {
     const std::string key = InputName::displacement(name).text();
     for (const auto& [given, text] : options_.stringParameters) {
         if (given != key) continue;
-        const std::optional<HeardOutput> heard = HeardOutput::parse(text);
-        if (!heard) return false;
-        const int length = heard->length;
+        const std::optional<QueriedOutput> queried = QueriedOutput::parse(text);
+        if (!queried) return false;
+        const int length = queried->length;
         const Expr& to = *call.args[1];
         const Expr* root = &to;
         while (root->kind == ExprKind::Index && !root->args.empty()) root = root->args[0].get();
@@ -70,8 +70,8 @@ bool Builder::heardDisplacement(const Expr& call, const std::string& name, Inst*
         Inst* a = to.type.array ? array(to) : nullptr;
         const bool open = a && lengths(a);
         found = constant(0);
-        if (static_cast<int>(kindOf(to.type.element())) != heard->kind || (length > 0) != (a != nullptr)) return true;
-        if (uniform && heard->varying) return false; // there is no answer either, and a message why
+        if (static_cast<int>(kindOf(to.type.element())) != queried->kind || (length > 0) != (a != nullptr)) return true;
+        if (uniform && queried->varying) return false; // there is no answer either, and a message why
         if (a && (a->op != Op::ArrayNew || (!open && arrayLength(a) > length))) return true;
         found = constant(1);
         if (!a) {

@@ -11,33 +11,33 @@ namespace alpenglow::rsl::ir {
 
 void Builder::include(const Function& f, Scan& to) {
     const Scan& s = scan(f);
-    to.survey.size += s.survey.size;
-    to.survey.possible = to.survey.possible && s.survey.possible;
+    to.callFacts.size += s.callFacts.size;
+    to.callFacts.possible = to.callFacts.possible && s.callFacts.possible;
     to.used.insert(s.used.begin(), s.used.end());
     to.own.insert(s.own.begin(), s.own.end());
 }
 
 void Builder::scan(const Expr& e, Scan& to) {
-    to.survey.size += 1;
+    to.callFacts.size += 1;
     if (e.symbol) to.used.insert(e.symbol);
     if (e.function) include(*e.function, to);
     if (e.shadeop && (e.shadeop->name == "outputchannel" || e.shadeop->name == "writeaov" || e.shadeop->name == "readaov" ||
                       e.shadeop->name == "evalparam"))
-        to.survey.possible = false;
-    if (e.kind == ExprKind::Method || e.kind == ExprKind::Member) to.survey.possible = false;
+        to.callFacts.possible = false;
+    if (e.kind == ExprKind::Method || e.kind == ExprKind::Member) to.callFacts.possible = false;
     if (e.shadeop && !e.function) {
         const Lowering l = e.shadeop->lowering;
-        to.survey.possible =
-            to.survey.possible && (l == Lowering::Runtime || l == Lowering::Special) && e.shadeop->name != "random";
+        to.callFacts.possible =
+            to.callFacts.possible && (l == Lowering::Runtime || l == Lowering::Special) && e.shadeop->name != "random";
     }
     front::eachPart(e, [&](const Expr& x) { scan(x, to); });
 }
 
 void Builder::scan(const Stmt& s, Scan& to) {
-    to.survey.size += 1;
+    to.callFacts.size += 1;
     if (s.kind == StmtKind::Illuminance || s.kind == StmtKind::Illuminate || s.kind == StmtKind::Solar ||
         s.kind == StmtKind::Gather)
-        to.survey.possible = false;
+        to.callFacts.possible = false;
     for (const Stmt::Declarator& d : s.declarators) to.own.insert(d.symbol);
     front::eachPart(s, [&](const Expr& x) { scan(x, to); });
     front::eachBody(s, [&](const StmtPtr& b) { scan(*b, to); });
@@ -52,12 +52,12 @@ const Builder::Scan& Builder::scan(const Function& f) {
     return s;
 }
 
-const Builder::Survey& Builder::survey(const Function& f) {
-    const auto [it, fresh] = surveys_.try_emplace(&f);
-    Survey& v = it->second;
+const Builder::CallFacts& Builder::callFacts(const Function& f) {
+    const auto [it, fresh] = callFacts_.try_emplace(&f);
+    CallFacts& v = it->second;
     if (!fresh) return v;
     const Scan& s = scan(f);
-    v = s.survey;
+    v = s.callFacts;
     std::set<int> assigned;
     std::set<const Function*> seen;
     if (f.body) scanAssigned(*f.body, assigned, seen);
@@ -97,7 +97,7 @@ bool Builder::selfContained(const Region& region) const {
     return good;
 }
 
-bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, const Survey& about, Outlined& out) {
+bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, const CallFacts& about, Outlined& out) {
     const Environment around = environment();
     const size_t sites = k_.sites.size();
     Inst* function = k_.make(Op::Function, Kind::None);
@@ -158,7 +158,7 @@ bool Builder::makeFunction(const Function& f, const std::vector<Inst*>& values, 
 /// The call as a Call; false when the function must, or had better, be inlined.
 bool Builder::outlined(const Function& f, const std::vector<Inst*>& values, Inst*& result, std::vector<Inst*>& outputs) {
     if (handleDepth_ > 0) return false; // its variables are those of one co-shader among several
-    const Survey& about = survey(f);
+    const CallFacts& about = callFacts(f);
     if (!about.possible || about.size <= options_.outline || kindOf(f.result) == Kind::Array) return false;
     std::string key;
     const auto string = [&](const Inst* v) {

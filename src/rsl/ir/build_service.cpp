@@ -16,9 +16,9 @@ struct Builder::ServiceCall {
     const bool points; ///< it is answered from point clouds
     const Shadeop& op = *e.shadeop;
     const Signature& sig = *e.signature;
-    const bool parted = kind == Op::Request && sig.result.array;
+    const bool byElement = kind == Op::Request && sig.result.array;
     /// Kind of the result; None where there is none, or several.
-    const Kind whole = parted ? kindOf(sig.result.element()) : sig.result.array ? Kind::None : kindOf(sig.result);
+    const Kind whole = byElement ? kindOf(sig.result.element()) : sig.result.array ? Kind::None : kindOf(sig.result);
     Site site{};
     std::vector<Inst*> args{}; ///< of the instruction
     /// A variable, and which results it takes.
@@ -69,19 +69,19 @@ void Builder::ServiceCall::result(Kind k, const std::string& name) {
 void Builder::ServiceCall::begin() {
     site.op = op.name;
     site.shadeop = &op;
-    site.resultType = storedType(parted ? e.type.element() : e.type);
+    site.resultType = storedType(byElement ? e.type.element() : e.type);
     site.pure = op.pure && kind == Op::Service;
     if (whole != Kind::None) result(whole, "");
 }
 
 void Builder::ServiceCall::output(const Expr& l, const std::string& name) {
     const int first = static_cast<int>(site.resultKinds.size());
-    if (op.section == "Messages" && !parted) {
+    if (op.section == "Messages" && !byElement) {
         received.push_back({b.receiver(site, l, name), first});
         return;
     }
     Out o{&l, first, 1};
-    if (l.type.array && parted) { // the element of this part
+    if (l.type.array && byElement) { // the element of this part
         o.at = std::max(part, 0);
         if (o.at >= b.arrayLength(b.array(l))) return;
         result(kindOf(l.type.element()), name);
@@ -249,7 +249,7 @@ Inst* Builder::service(const Expr& e, Op kind, int part, bool points) {
     c.arguments();
     if (Inst* folded = foldString(c.op.name, c.positional)) return folded;
     if (c.op.name == "displacement" && !c.positional.empty() && c.positional[0]->op == Op::ConstString)
-        if (Inst* heard = nullptr; heardDisplacement(e, c.positional[0]->text, heard)) return heard;
+        if (Inst* queried = nullptr; queriedDisplacement(e, c.positional[0]->text, queried)) return queried;
     place_ = e.place;
     c.footprints();
     c.pairs();

@@ -242,8 +242,8 @@ bool Builder::buildShader() {
     std::set<const Function*> seen;
     if (shader_.body) scanAssigned(*shader_.body, assigned, seen);
     assignedAnywhere_ = assigned;
-    for (const auto& heard : options_.stringParameters)
-        if (const InputName parsed = InputName::parse(heard.first); parsed.member)
+    for (const auto& option : options_.stringParameters)
+        if (const InputName parsed = InputName::parse(option.first); parsed.member)
             if (const Symbol* s = ownMember(shader_, parsed.name)) assigned.insert(slot(s));
     bindParameters(assigned);
     lightBlocks_.clear();

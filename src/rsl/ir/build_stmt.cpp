@@ -38,8 +38,8 @@ size_t Builder::statements(const std::vector<StmtPtr>& list, size_t from, int de
             continue;
         }
         if (depth == kPart) return n;
-        const bool parted = depth == 0 && list.size() - n > kGuards && plainDeclarations(list, n);
-        if (parted) // what one part declares the next one reads
+        const bool divides = depth == 0 && list.size() - n > kGuards && plainDeclarations(list, n);
+        if (divides) // what one part declares the next one reads
             for (size_t later = n; later < list.size(); ++later)
                 for (const Stmt::Declarator& d : list[later]->declarators) set(slot(d.symbol), zero(kindOf(d.symbol->type)));
         size_t reached = list.size();
@@ -52,7 +52,7 @@ size_t Builder::statements(const std::vector<StmtPtr>& list, size_t from, int de
             } else {
                 set(f.returned, boolean(false));
             }
-            const int inside = parted ? 1 : depth == 0 ? std::numeric_limits<int>::min() : depth + 1;
+            const int inside = divides ? 1 : depth == 0 ? std::numeric_limits<int>::min() : depth + 1;
             reached = statements(list, n, inside);
         });
         if (depth != 0) return reached;

@@ -34,12 +34,14 @@ inline std::string indexText(float x) { return fmt::format("{:.9g}", std::trunc(
 /// From the checked tree of one shader to the IR of one kernel; used once.
 class Builder final : FunctionBuilder {
 public:
+    /// k: receives the code, empty before. direct: calls that stay direct.
     Builder(Kernel& k, const Program& p, const Shader& s, const KernelOptions& o, Diagnostics& d, const DirectSet& direct)
         : FunctionBuilder(k, p.files, o, d), program_(p), shader_(s), direct_(direct) {}
     /// Builds the kernel of the shader. False after an error, which is reported.
     bool buildShader();
     /// Builds a kernel whose outputs are the values of all parameters, given those of the scene.
     bool buildDefaults(const std::vector<ParameterValue>& given);
+    /// The value that the scene gives a parameter, or its default; length: of an array of open length.
     Inst* givenValue(const Symbol&, const ParameterValue&);
     Inst* defaultValue(const ShaderParameter&, int length);
 
@@ -203,23 +205,23 @@ private:
         std::vector<int> assigned; ///< slots that get results behind those of the output parameters
     };
     /// What is to be known about a function from its text, with everything it calls.
-    struct Survey {
+    struct CallFacts {
         bool possible = true;   ///< it calls neither services nor rays nor lights
         double size = 0;        ///< nodes of the tree once everything is inlined
         std::set<int> free;     ///< slots of variables from outside
         std::set<int> assigned; ///< those of them that it sets
     };
     struct Scan {
-        Survey survey;
+        CallFacts callFacts;
         std::set<const Symbol*> used, own;
     };
-    const Survey& survey(const Function&);
+    const CallFacts& callFacts(const Function&);
     const Scan& scan(const Function&);
     void scan(const Stmt&, Scan&);
     void scan(const Expr&, Scan&);
     void include(const Function&, Scan&);
     bool outlined(const Function&, const std::vector<Inst*>& values, Inst*& result, std::vector<Inst*>& outputs);
-    bool makeFunction(const Function&, const std::vector<Inst*>& values, const Survey&, Outlined&);
+    bool makeFunction(const Function&, const std::vector<Inst*>& values, const CallFacts&, Outlined&);
     bool selfContained(const Region&) const;
 
     // build_handles.cpp: co-shaders
@@ -269,12 +271,12 @@ private:
     const Symbol* memberOf(size_t instance, const std::string& name) const;
     Inst* memberValue(size_t instance, const Symbol&);
     /// A member that a co-shader does not have. error: if the call is certain; whenRun: printed if the running shader reaches it.
-    struct Lack {
+    struct Missing {
         Raised error, whenRun;
     };
-    Lack noMember(size_t instance, const std::string& name) const;
-    Lack otherType(size_t instance, const Symbol& has, const std::string& name, const std::string& wanted) const;
-    void lacks(const Place&, size_t instance, const Lack&, const std::function<bool(size_t)>& has);
+    Missing noMember(size_t instance, const std::string& name) const;
+    Missing otherType(size_t instance, const Symbol& has, const std::string& name, const std::string& wanted) const;
+    void reportMissing(const Place&, size_t instance, const Missing&, const std::function<bool(size_t)>& has);
     Inst* methodCall(const Expr&);
     Inst* memberAccess(const Expr&);
     Inst* memberArray(const Expr&);
@@ -284,7 +286,7 @@ private:
     Inst* getVariable(const Expr&);
     Inst* primitiveVariable(const std::string& name, const Expr* to);
     // build_messages.cpp
-    bool heardDisplacement(const Expr& call, const std::string& name, Inst*& found);
+    bool queriedDisplacement(const Expr& call, const std::string& name, Inst*& found);
     Inst* askPrimitive(Inst* name, const Expr* to);
     /// Rows that a variable takes from a service, and what puts them there where the first row, 0 or 1, says so.
     struct Receiver {
@@ -405,7 +407,7 @@ private:
     std::vector<LightBlock> lightBlocks_;
     int blockRan_ = -1; ///< slot: whether a block has run; a light shader is ambient where none has
     std::map<const Function*, Scan> scans_;
-    std::map<const Function*, Survey> surveys_;
+    std::map<const Function*, CallFacts> callFacts_;
     std::map<std::pair<const Function*, std::string>, Outlined> outlined_;
     std::vector<Inst*> functions_; ///< Function instructions, those that are called first
     std::set<int> assignedAnywhere_;

@@ -44,6 +44,7 @@ std::vector<uint32_t> countUses(const Kernel&);
 /// Replacements by id, with path compression; null entries are not replaced.
 class Replacements {
 public:
+    /// What stands for the instruction now; itself if it is not replaced.
     Inst* operator()(Inst* inst) {
         while (inst->id < map_.size() && map_[inst->id]) inst = map_[inst->id];
         return inst;
@@ -66,7 +67,7 @@ private:
     std::vector<Inst*> map_;
 };
 
-using CopyMap = std::unordered_map<const Inst*, Inst*>;
+using CopyMap = std::unordered_map<const Inst*, Inst*>; ///< from original to copy
 /// A copy of one instruction with its regions; operands are looked up in `map`, absent ones stay. The copies are added to `map`.
 Inst* copyInst(Kernel&, const Inst*, CopyMap& map);
 /// Copies the body of a region into `out`; parameters must be in `map` already.
@@ -80,9 +81,11 @@ inline Inst* mapped(const CopyMap& map, Inst* inst) {
 /// Constants and inputs collected by a pass; they go to the front of the kernel, where they dominate everything.
 class Leaves {
 public:
+    /// Flushes when it ends.
     explicit Leaves(Kernel& k) : kernel_(k) {}
     ~Leaves() { flush(); }
     Inst* constant(Kind, float value); ///< every component `value`
+    /// A constant by components, and a text.
     Inst* constant(Kind, const std::vector<float>&);
     Inst* string(const std::string&);
     /// Adds a leaf that the caller has made.

@@ -79,23 +79,23 @@ struct Inst;
 struct Region {
     std::vector<Inst*> params; ///< RegionParam instructions
     std::vector<Inst*> body;   ///< in order
-    std::vector<Inst*> yields;
+    std::vector<Inst*> yields; ///< values of the construct around it
 };
 
 /// An instruction, and its result as a value. Kernel::pool owns it.
 struct Inst {
-    Op op{};
-    Kind kind{};               ///< kind of the (single) result; None with several results (then `results`)
-    Kind element = Kind::None; ///< arrays
-    std::vector<Kind> results; ///< of instructions with several results
-    std::vector<Inst*> args;
-    std::vector<Region> regions;
-    int index = 0;
-    int site = -1; ///< of Loop: what is called when its turns have no end (passes/looplimit.h)
-    std::vector<float> numbers;
-    std::string text; ///< symbol or string constant
-    Place place;
-    uint32_t id = 0; ///< for printing
+    Op op{};                     ///< what it does
+    Kind kind{};                 ///< kind of the (single) result; None with several results (then `results`)
+    Kind element = Kind::None;   ///< arrays
+    std::vector<Kind> results;   ///< of instructions with several results
+    std::vector<Inst*> args;     ///< operands
+    std::vector<Region> regions; ///< bodies of a construct
+    int index = 0;               ///< depends on op: component, region or result
+    int site = -1;               ///< of Loop: what is called when its turns have no end (passes/looplimit.h)
+    std::vector<float> numbers;  ///< of a constant
+    std::string text;            ///< symbol or string constant
+    Place place;                 ///< in the shader, for messages
+    uint32_t id = 0;             ///< for printing
     // filled by passes
     uint8_t order = 0; ///< jet order that must be carried, 0..2 (passes/derivatives.h)
 };
@@ -104,19 +104,19 @@ struct Inst {
 /// Names: "P" "N" "Ng" "u" ... for predefined variables; "param:Kd" for shader parameters; "space:FROM>TO" (Matrix) for named
 /// spaces, always with "current" on one side; "inverse:..." is not needed, the caller supplies both.
 struct Input {
-    std::string name;
+    std::string name;        ///< InputName::text()
     Kind kind = Kind::Float; ///< element kind when an array
     Type type;               ///< language type, for callers that fill it
-    int array = 0;
-    bool uniform = false;  ///< laid out as one value for the batch (build S)
-    bool constant = false; ///< does not change over the surface: no derivatives, in build V too
-    uint8_t order = 0;     ///< derivatives the kernel reads (passes/derivatives.h)
+    int array = 0;           ///< 0: none
+    bool uniform = false;    ///< laid out as one value for the batch (build S)
+    bool constant = false;   ///< does not change over the surface: no derivatives, in build V too
+    uint8_t order = 0;       ///< derivatives the kernel reads (passes/derivatives.h)
 };
 /// What a kernel writes; names are those of OutputName.
 struct OutputSlot {
-    std::string name;
-    Kind kind = Kind::Float;
-    Type type;
+    std::string name;        ///< OutputName::text()
+    Kind kind = Kind::Float; ///< of a component
+    Type type;               ///< of the value, for callers
 };
 
 /// A call site of a Service, Request or LightLoop: everything about it that is constant.
@@ -125,14 +125,14 @@ struct Site {
     std::vector<std::string> strings;     ///< positional string arguments that are constant ("" where not constant)
     std::vector<std::string> names;       ///< names of the optional pairs, in the order their values follow in args
     std::vector<std::string> pairStrings; ///< the pair's constant string value, "" for numeric pairs
-    std::vector<Kind> argKinds; ///< flattened argument kinds, positional then pairs (Strings that are constant are left out)
-    std::vector<Type> argTypes;
-    std::vector<Kind> resultKinds;
+    std::vector<Kind> argKinds;    ///< flattened argument kinds, positional then pairs (Strings that are constant are left out)
+    std::vector<Type> argTypes;    ///< of the arguments, before they were flattened
+    std::vector<Kind> resultKinds; ///< of the results, flattened
     std::vector<std::string> resultNames; ///< result "" for the value, then names of output pairs / output arguments
-    Type resultType;
-    bool pure = false;
-    const Shadeop* shadeop = nullptr;
-    Place place;
+    Type resultType;                      ///< of the value
+    bool pure = false;                    ///< Shadeop::pure
+    const Shadeop* shadeop = nullptr;     ///< null: a loop over lights
+    Place place;                          ///< of the call
 };
 
 /// What the passes found out, for `alpenglow info` and the scheduler.
@@ -141,14 +141,14 @@ struct KernelFacts {
     std::string whyNot; ///< the first place that is not affine, in words
     /// Something that keeps the kernel from being affine: the call whose result is concerned, and why.
     struct NonLinear {
-        std::string op, why;
-        Place place;
+        std::string op, why; ///< for messages
+        Place place;         ///< of the call
         /// For people: "specular, line 12: ...".
         std::string text() const { return op + ", line " + std::to_string(place.line) + ": " + why; }
     };
-    std::vector<NonLinear> nonLinear; ///< everything; not kept in kernel files
-    bool suspends = false;            ///< Requests are left: the kernel becomes a coroutine
-    bool lightLoops = false;
+    std::vector<NonLinear> nonLinear;               ///< everything; not kept in kernel files
+    bool suspends = false;                          ///< Requests are left: the kernel becomes a coroutine
+    bool lightLoops = false;                        ///< it has loops over lights
     std::vector<std::pair<int, std::string>> stuck; ///< sites that no weight can be given to, with the reason (passes/affine.h)
     std::vector<NonLinear> direct;                  ///< lobe calls that stay direct under path
     bool ambientLight = false;                      ///< light: no illuminate and no solar
@@ -166,16 +166,16 @@ struct OutputLight {
 };
 /// One kernel in static single assignment form with structured control flow.
 struct Kernel {
-    std::string name;
-    ShaderKind kind{};
-    std::string light = "Ci"; ///< KernelOptions::light
-    std::vector<Input> inputs;
-    std::vector<OutputSlot> outputs;
-    std::vector<Site> sites;
-    std::vector<std::string> files; ///< Place::file
-    Region body;
-    KernelFacts facts;
-    std::deque<std::unique_ptr<Inst>> pool;
+    std::string name;                       ///< of the shader
+    ShaderKind kind{};                      ///< of shader
+    std::string light = "Ci";               ///< KernelOptions::light
+    std::vector<Input> inputs;              ///< in the order of KernelCall::in
+    std::vector<OutputSlot> outputs;        ///< in the order of KernelCall::out
+    std::vector<Site> sites;                ///< numbered by Inst::site
+    std::vector<std::string> files;         ///< Place::file
+    Region body;                            ///< the code
+    KernelFacts facts;                      ///< by the passes
+    std::deque<std::unique_ptr<Inst>> pool; ///< owns all instructions
 
     /// A new instruction with the next id, in no region yet.
     Inst* make(Op op, Kind result, std::vector<Inst*> args = {});

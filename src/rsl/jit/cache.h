@@ -23,6 +23,7 @@ public:
     /// A full or read-only disk is no error: the next run compiles again. Trims once in 256 kernels or after a 64th of the
     /// largest size, so the folder may be larger by that.
     void store(const std::string& key, const KernelFile&) const;
+    /// As given to the constructor.
     const std::string& directory() const { return directory_; }
 
     /// Drops the least recently used kernels beyond the largest size, and files that killed programs left.

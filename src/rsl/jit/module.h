@@ -20,18 +20,18 @@ Isa isaFor(int lanes);
 
 /// LLVM bitcode in memory that the program owns.
 struct BitcodeView {
-    const unsigned char* data = nullptr;
-    size_t size = 0;
+    const unsigned char* data = nullptr; ///< null: there is none
+    size_t size = 0;                     ///< bytes
 };
 
 /// A kernel to compile, and how. Pointers must outlive the call.
 struct ModuleRequest {
     const ir::Kernel* kernel = nullptr;
-    int lanes = 16;
-    int vectors = 0; ///< 0: chosen
-    bool mixed = false;
-    int optimize = 2;
-    Isa isa = Isa::Avx512;
+    int lanes = 16;                                        ///< of a vector
+    int vectors = 0;                                       ///< 0: chosen
+    bool mixed = false;                                    ///< batches mix instances: uniform inputs vary
+    int optimize = 2;                                      ///< LLVM's level, 0 to 3
+    Isa isa = Isa::Avx512;                                 ///< level of the processor
     BitcodeView (*bitcode)(int lanes) = nullptr;           ///< the runtime at 4, 8, 16, 32, 64 lanes
     const std::set<std::string>* zeroDerivative = nullptr; ///< runtime symbols whose derivatives are zero
     /// Runtime symbols that are called, not inlined, when there are many calls; with the most lanes that the runtime has them
@@ -42,11 +42,11 @@ struct ModuleRequest {
 
 /// The compiled kernel, or why there is none.
 struct ModuleResult {
-    std::string object; ///< ELF relocatable file; empty on failure
-    std::string error;
-    std::string text;
-    int strip = 0; ///< points per strip: lanes * vectors
-    bool suspending = false;
+    std::string object;               ///< ELF relocatable file; empty on failure
+    std::string error;                ///< why there is none
+    std::string text;                 ///< LLVM's code as text, if it was asked for
+    int strip = 0;                    ///< points per strip: lanes * vectors
+    bool suspending = false;          ///< the kernel is a coroutine
     uint64_t localBytes = 0;          ///< of KernelCall::memory
     std::vector<std::string> strings; ///< string constants in the order of KernelCall::strings
 };

@@ -20,8 +20,8 @@ enum class Shown {
 
 /// One kind of message: what `alpenglow compile --explain ID` and docs/messages.md tell about it.
 struct MessageKind {
-    const char* id; ///< lower case words joined by '-'; never changed once published
-    Shown shown;
+    const char* id;    ///< lower case words joined by '-'; never changed once published
+    Shown shown;       ///< where and whether it appears
     const char* about; ///< what is wrong, and what to do
     const char*
         example;        ///< a program with this message and no other; the classes in it are bound as co-shaders under their names
@@ -31,7 +31,7 @@ struct MessageKind {
 /// One text of a kind. "{}" stands for an argument.
 struct MessageText {
     const MessageKind& kind;
-    Severity severity;
+    Severity severity; ///< of the message
     const char* text;
     const char* hint; ///< or ""
 };
@@ -46,7 +46,8 @@ struct Raised {
 
 /// What may stand for a "{}" of a message.
 struct MessageArgument {
-    std::string text;
+    std::string text; ///< as it appears
+    /// From texts and whole numbers.
     MessageArgument(std::string s) : text(std::move(s)) {}
     MessageArgument(std::string_view s) : text(s) {}
     MessageArgument(const char* s) : text(s) {}
@@ -65,6 +66,7 @@ constexpr int countArguments(std::string_view text) {
 
 /// A text with the number of its arguments, which the compiler of C++ holds its calls to: report(place, kUndeclared(name)).
 template <int N> struct Message : MessageText {
+    /// The message with these arguments.
     template <class... A>
         requires(sizeof...(A) == N)
     Raised operator()(A&&... a) const {
@@ -73,6 +75,7 @@ template <int N> struct Message : MessageText {
         (r.arguments.push_back(MessageArgument(std::forward<A>(a)).text), ...);
         return r;
     }
+    /// The message without arguments.
     operator Raised() const
         requires(N == 0)
     {

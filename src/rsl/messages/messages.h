@@ -21,7 +21,7 @@ namespace alpenglow::rsl {
 
 /// What the kinds from `first` on are about, up to the next subject.
 struct MessageSubject {
-    const char* title;
+    const char* title; ///< heading in docs/messages.md
     const MessageKind& first;
 };
 /// All subjects, in the order of the manual.

@@ -18,6 +18,7 @@ enum class Growth : uint8_t { None, Identity, Other };
 /// One walk over a kernel in long form. When a step fails the kernel is half changed: run it on a copy of the body.
 class Weights {
 public:
+    /// Both outlive this.
     Weights(Kernel& kernel, const Dependence& dependence) : k(kernel), d(dependence) {}
 
     /// Puts an Emit in place of every Request that reaches `ci` (an Output of Kernel::light, or null for none). The Requests
@@ -25,6 +26,7 @@ public:
     bool run(Inst* ci);
     /// Adds Output number `output`, the weight of the inputs together in `ci`. Dependence on them: analyseInput. False as above.
     bool runToInputs(Inst* ci, const std::vector<Inst*>& inputs, int output);
+    /// Why the last step failed.
     const std::string& why() const { return reason; }
     int stuckSite() const { return site; } ///< -1: not known
 

@@ -13,6 +13,7 @@ void orderDerivatives(Kernel&, Diagnostics&);
 /// For each Call of a kernel (function null) or of one function: the orders wanted of its results. Of a function, `results` says
 /// what is wanted of its own.
 using CallOrders = std::vector<std::pair<Inst*, std::vector<uint8_t>>>;
+/// Orders of a function whose results are wanted to these orders.
 CallOrders callOrders(Kernel&, Inst* function, const std::vector<uint8_t>& results);
 
 } // namespace alpenglow::rsl::passes

@@ -14,6 +14,7 @@ namespace alpenglow::rsl::passes {
 enum class Neighbour : uint8_t { Here, U, V, UU, UV, VV };
 inline constexpr int kNeighbours = 6;
 inline constexpr int kStepsU[kNeighbours] = {0, 1, 0, 2, 1, 0}, kStepsV[kNeighbours] = {0, 0, 1, 0, 1, 2};
+/// The neighbour of a number below kNeighbours; its bit in sets.
 inline Neighbour neighbour(int n) { return static_cast<Neighbour>(n); }
 inline uint8_t bitOf(Neighbour n) { return static_cast<uint8_t>(1 << static_cast<int>(n)); }
 /// One step on, along v or u; false where that is too far.
@@ -27,13 +28,16 @@ inline bool liesOn(Neighbour base, Neighbour n) {
 /// What does not depend on where one looks. The kernel is in the long form (edit.h).
 class Motion {
 public:
+    /// Looks at the whole kernel, which must not change afterwards.
     explicit Motion(Kernel&);
+    /// The kernel.
     Kernel& kernel() const { return k_; }
     /// Whether a value may differ between the point and its neighbours. Results of rays and lights do not.
     bool moves(const Inst* i) const { return moves_[i->id] != 0; }
     /// Whether the instruction, or the parameter, is within a construct (If, Loop, LightLoop, Function).
     bool inside(const Inst* i, const Inst* construct) const;
     Inst* owner(const Inst* i) const { return owner_[i->id]; } ///< the construct around it; null: none
+    /// What writes to an array, in order.
     const std::vector<Inst*>& stores(const Inst* array) const { return stores_[array->id]; }
     /// Whether result `index` of an If or a Loop, or of a Function, can be worked out again elsewhere: what it needs from within
     /// has no effects, asks no rays and no lights, and reads no array that is written both there and outside.
@@ -61,12 +65,15 @@ private:
 /// neighbour's own branches. `within` names the outermost repeated construct, null for none.
 class Demand {
 public:
+    /// Demands within functions, by function, result and neighbour.
     using Functions = std::map<std::tuple<const Inst*, int, Neighbour>, std::unique_ptr<Demand>>;
     /// Of the whole kernel: of every Du and Dv in it.
     Demand(Motion&, Functions&);
     /// Of a result of a function at a neighbour.
     Demand(Motion&, Functions&, const Inst* function, int result, Neighbour);
 
+    /// Bits of Neighbour: where a value, the effects of a construct, an array, a result of a construct, and any of its results
+    /// are wanted.
     uint8_t of(const Inst* i, const Inst* within) const { return get(values_, i, within); }
     uint8_t effects(const Inst* construct, const Inst* within) const { return get(effects_, construct, within); }
     uint8_t array(const Inst* a, const Inst* within) const { return get(arrays_, a, within); }
@@ -75,6 +82,7 @@ public:
     /// What a Loop, LightLoop or Function carries besides its own values, or what a followed If gives: index and neighbour, in
     /// order.
     using Carried = std::vector<std::pair<int, Neighbour>>;
+    /// Of a construct; what is wanted within a function for one result at a neighbour.
     Carried carried(const Inst* construct, const Inst* within) const;
     Demand& function(const Inst* f, int result, Neighbour);
 

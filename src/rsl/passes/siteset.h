@@ -7,6 +7,7 @@
 
 namespace alpenglow::rsl::passes {
 
+/// Sets of ordinals of Requests.
 class SiteSet {
 public:
     /// The set of one.
@@ -15,6 +16,7 @@ public:
         s.add(n);
         return s;
     }
+    /// Whether it is not empty; adds an ordinal; whether one is in it.
     explicit operator bool() const {
         for (uint64_t w : rest_)
             if (w) return true;

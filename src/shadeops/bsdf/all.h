@@ -14,17 +14,20 @@
 
 #ifdef ALPENGLOW_DESCRIBE
 namespace alpenglow::shadeops {
+/// All distributions of bsdf(), in the order of messages and manuals.
 std::span<const Distribution> distributions() {
     static const std::vector<Distribution> list = {bsdfUniform(),          bsdfCosine(),       bsdfOrenNayar(), bsdfBlinn(),
                                                    bsdfAshikhminShirley(), bsdfCookTorrance(), bsdfWard(),      bsdfGgx(),
                                                    bsdfBeckmann(),         bsdfGlass(),        bsdfHair()};
     return list;
 }
+/// By the name in shaders; null: there is none.
 const Distribution* findDistribution(std::string_view name) {
     for (const Distribution& d : distributions())
         if (d.name == name) return &d;
     return nullptr;
 }
+/// The shadeops of the section, one for each distribution.
 std::vector<Shadeop> bsdfShadeops() {
     std::vector<Shadeop> list;
     for (const Distribution& d : distributions()) list.push_back(d.formula);

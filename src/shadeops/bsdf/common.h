@@ -12,8 +12,11 @@ namespace alpenglow::shadeops::AL_NAMESPACE {
 /// Smaller roughness counts as this: a mirror has no value at a single direction.
 inline constexpr float kLeastRoughness = 0.01f;
 
+/// Zero in all components.
 template <class T> AL_INLINE Triple<T> none3() { return {T(vf(0)), T(vf(0)), T(vf(0))}; }
+/// 0 for negative x.
 template <class T> AL_INLINE T positive(const T& x) { return larger(x, T(vf(0))); }
+/// At least the least roughness that the formulas bear.
 template <class T> AL_INLINE T sane(const T& roughness) { return larger(roughness, T(vf(kLeastRoughness))); }
 
 /// -log(1 - x) / x for 0 <= x <= 1: a series where the quotient has no digits. At 1 a large number.
@@ -44,7 +47,7 @@ template <class T> AL_INLINE T fresnelComplex(const T& c, const T& eta, const T&
     const T rp = rs * divide(sum2 - twice2, sum2 + twice2);
     return smaller(positive((rs + rp) * vf(0.5f)), T(vf(1)));
 }
-/// One channel of the optional Fresnel factor: 1 where eta is 0 (seed: "providing full reflection").
+/// One channel of the optional Fresnel factor: 1 where eta is 0 (docs/design/rsl.md, "Distributions").
 template <class T> AL_INLINE T fresnelOrFull(const T& c, const T& eta, const T& k) {
     return select(value(eta) <= 0, T(vf(1)), fresnelComplex(c, eta, k));
 }
@@ -54,10 +57,10 @@ template <class T> AL_INLINE Triple<T> fresnelOrFull3(const T& c, const Triple<T
 
 /// What every reflection by small facets needs.
 template <class T> struct Facet {
-    Triple<T> l, n, o, h;
-    T nl, no, nh, oh;
-    T sine2; ///< squared sine between n and h, with digits near 0
-    vm seen; ///< light and viewer on the side of n
+    Triple<T> l, n, o, h; ///< unit: light, normal, viewer, halfway
+    T nl, no, nh, oh;     ///< cosines between them
+    T sine2;              ///< squared sine between n and h, with digits near 0
+    vm seen;              ///< light and viewer on the side of n
 };
 /// l, n and o are unit.
 template <class T> AL_INLINE Facet<T> facetOfUnit(const Triple<T>& l, const Triple<T>& n, const Triple<T>& o) {
@@ -78,7 +81,7 @@ template <class T> AL_INLINE T grooves(const Facet<T>& f) {
     const T k = divide(f.nh * vf(2), f.oh);
     return smaller(T(vf(1)), smaller(k * f.no, k * f.nl));
 }
-/// Roughness to exponent (seed): roughness^-3.5 - 1.
+/// Roughness to exponent: roughness^-3.5 - 1 (docs/design/rsl.md).
 template <class T> AL_INLINE T exponentOf(const T& roughness) { return positive(power(sane(roughness), T(vf(-3.5f))) - vf(1)); }
 
 } // namespace alpenglow::shadeops::AL_NAMESPACE

@@ -36,7 +36,7 @@ AL_INLINE GlassSide<T> glassSide(const Triple<T>& front, const Triple<T>& o, con
 /// The values; the density by solid angle of l of the facets that the viewer sees, as far as the choice between the two leaves
 /// it; and what such a facet reflects.
 template <class T> struct GlassValue {
-    T reflected, refracted, density, fresnel;
+    T reflected, refracted, density, fresnel; ///< f cos for l above and below; per solid angle; 0 to 1
     vm reflects;
 };
 /// First the part reflected, then the part refracted. The viewer may be on either side of n. l is unit.

@@ -15,7 +15,9 @@ inline constexpr float kHairEta = 1.55f;
 inline constexpr int kHairPieces = 12;
 /// Sines of the angles of the bounds and the middles of the pieces, by their Taylor series.
 struct HairTable {
+    /// At bounds and middles in turn, from 0 to PI/2.
     float angle[2 * kHairPieces + 1] = {}, sine[2 * kHairPieces + 1] = {}, cosine[2 * kHairPieces + 1] = {};
+    /// Computed by the compiler.
     constexpr HairTable() {
         for (int i = 0; i <= 2 * kHairPieces; ++i) {
             const double x = 0.5 * 3.14159265358979323846 * i / (2 * kHairPieces);
@@ -57,17 +59,21 @@ template <class T> AL_INLINE T besselScaled(const T& x) {
 template <class T> struct HairBell {
     T perWidth, low, scale; ///< 1 / width; logistic at -PI; 1 over what lies within +-PI
     HairBell() = default;
+    /// width: scale of the bell, radians, > 0.
     AL_MEMBER explicit HairBell(const T& width) : perWidth(divide(T(vf(1)), width)) {
         low = logistic(perWidth * vf(-kPi));
         scale = divide(T(vf(1)), vf(1) - low * vf(2));
     }
+    /// The logistic function; arguments below -30 count as -30.
     static AL_MEMBER T logistic(const T& x) { return divide(T(vf(1)), exponential(-larger(x, T(vf(-30)))) + vf(1)); }
+    /// X in -PI to PI, and in `turns` the whole turns that were subtracted.
     static AL_MEMBER T wrap(const T& x, vf& turns) {
         turns = floorLanes((value(x) + vf(kPi)) * vf(0.5f / kPi));
         return x - T(turns * vf(2 * kPi));
     }
     /// The bell's integral up to x, before `scale`, and the whole turns to add: differences of both are integrals.
     AL_MEMBER T upTo(const T& x, vf& turns) const { return logistic(wrap(x, turns) * perWidth); }
+    /// The bell's value at x.
     AL_MEMBER T at(const T& x) const {
         vf n;
         const T e = exponential(-absolute(wrap(x, n)) * perWidth), s = e + vf(1);
@@ -80,6 +86,7 @@ template <class T> struct HairLight {
     T sl, so, cl, co; ///< sines and cosines of the inclinations toward the light and the viewer
     T crossing;       ///< the part of the light that crosses the fibre: reciprocal, and never more than all
     T phi, cd;        ///< angle around the fibre; cosine of half the difference of the inclinations
+    /// Of refraction; 1 over that in the plane across the fibre; minus the path through the middle, in radii.
     T index, perIndex, way;
 };
 /// l, tip and o are unit; axes: tangents(tip, udir).
@@ -112,9 +119,10 @@ AL_INLINE HairLight<T> hairLight(const Triple<T>& l, const Triple<T>& tip, const
 
 /// Light in one piece of the fibre's width, whatever lobe it is of. `to` and `middle`: angles inside.
 template <class T> struct HairPiece {
-    T to, middle, fresnel;
-    Triple<T> through;
+    T to, middle, fresnel; ///< angles inside, and Fresnel reflectance
+    Triple<T> through;     ///< transmittance of one way through the fibre, by channel
 };
+/// Piece i, 0 to kHairPieces - 1.
 template <class T> AL_INLINE HairPiece<T> hairPiece(const HairLight<T>& g, const Triple<T>& absorption, int i) {
     HairPiece<T> x;
     const T one = T(vf(1)), s = g.perIndex * vf(kHair.sine[2 * i + 1]);
@@ -128,14 +136,15 @@ template <class T> AL_INLINE HairPiece<T> hairPiece(const HairLight<T>& g, const
 
 /// One lobe, while the pieces are added up.
 template <class T> struct HairLobe {
-    vf p;
-    T along; ///< the part of the light that leaves at the inclination of l
-    HairBell<T> bell;
-    T from;        ///< angle between in and out where the piece begins
-    T plus, minus; ///< the logistic of phi - from and phi + from
-    vf plusTurns, minusTurns;
-    Triple<T> around;
+    vf p;                     ///< number of passes inside: 0 is reflection
+    T along;                  ///< the part of the light that leaves at the inclination of l
+    HairBell<T> bell;         ///< around the fibre
+    T from;                   ///< angle between in and out where the piece begins
+    T plus, minus;            ///< the logistic of phi - from and phi + from
+    vf plusTurns, minusTurns; ///< whole turns of plus and minus
+    Triple<T> around;         ///< sum so far, by channel
 };
+/// The lobe by its number: 0 to 3.
 template <class T> AL_INLINE vf hairNumber(const T& lobe) { return minLanes(maxLanes(floorLanes(value(lobe)), vf(0)), vf(3)); }
 /// Scale of the bell around the fibre for a spread of 0..1.
 template <class T> AL_INLINE T hairBellWidth(const T& azimuthal) {
@@ -160,6 +169,7 @@ AL_INLINE HairLobe<T> hairLobe(const HairLight<T>& g, vf p, const T& st, const T
     lobe.minus = bell.upTo(g.phi + lobe.from, lobe.minusTurns);
     return lobe;
 }
+/// Adds piece i to a lobe.
 template <class T> AL_INLINE void addPiece(HairLobe<T>& lobe, const HairLight<T>& g, const HairPiece<T>& x, int i) {
     const vf p = lobe.p;
     const HairBell<T>& bell = lobe.bell;

@@ -39,6 +39,7 @@ template <class T> AL_INLINE T scaledErfc(const T& x) {
     r = mad(r, t, T(vf(-0.284496736f)));
     return mad(r, t, T(vf(0.254829592f))) * t;
 }
+/// Smith's lambda for Beckmann's slopes; s2, c: stretched2() and cosine of the direction.
 template <class T> AL_INLINE T beckmannLambda(const T& s2, const T& c) {
     const T x = divide(c, root(larger(s2, c * c * vf(1e-2f))));                               // 10: as good as straight on
     return exponential(-x * x) * (divide(T(vf(0.564189584f)), x) - scaledErfc(x)) * vf(0.5f); // 1 / sqrt(pi)

@@ -88,15 +88,15 @@ TEST(ProtocolNames, Pairs) {
 }
 
 TEST(ProtocolNames, WhatIsHeard) {
-    const auto heard = HeardOutput::parse(HeardOutput{2, 5, true}.text());
-    ASSERT_TRUE(heard);
-    EXPECT_EQ(heard->kind, 2);
-    EXPECT_EQ(heard->length, 5);
-    EXPECT_TRUE(heard->varying);
-    EXPECT_FALSE(HeardOutput::parse("2 5"));
-    EXPECT_TRUE(HeardMember::parse(HeardMember{4, true}.text()).length);
-    EXPECT_EQ(HeardMember::parse(HeardMember{4, true}.text()).count, 4);
-    EXPECT_EQ(HeardMember::parse(HeardMember{}.text()).count, 0);
+    const auto queried = QueriedOutput::parse(QueriedOutput{2, 5, true}.text());
+    ASSERT_TRUE(queried);
+    EXPECT_EQ(queried->kind, 2);
+    EXPECT_EQ(queried->length, 5);
+    EXPECT_TRUE(queried->varying);
+    EXPECT_FALSE(QueriedOutput::parse("2 5"));
+    EXPECT_TRUE(QueriedMember::parse(QueriedMember{4, true}.text()).length);
+    EXPECT_EQ(QueriedMember::parse(QueriedMember{4, true}.text()).count, 4);
+    EXPECT_EQ(QueriedMember::parse(QueriedMember{}.text()).count, 0);
     EXPECT_TRUE(isLengthResult(lengthResult("value")));
     EXPECT_TRUE(isLengthParameter(lengthParameter("list")));
     EXPECT_TRUE(isElementResult("list[0]"));

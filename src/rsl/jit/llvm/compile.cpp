@@ -1,4 +1,5 @@
-// The LLVM side of the door: module set-up, passes, machine code. Everything else of LLVM's size is here and nowhere else.
+// The LLVM side of the interface (rsl/jit/module.h): module set-up, passes, machine code. Everything else of LLVM's size is here
+// and nowhere else.
 #include "rsl/jit/llvm/allocator.h"
 #include "rsl/jit/llvm/emitter.h"
 #include "rsl/jit/llvm/masks.h"

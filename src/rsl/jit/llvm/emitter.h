@@ -19,31 +19,34 @@ struct CodegenError : std::runtime_error {
 
 /// A component with its derivative parts du, dv, duu, duv, dvv. A null part is exactly zero and costs nothing.
 struct Jet {
-    llvm::Value* v = nullptr;
-    std::array<llvm::Value*, 5> d{};
+    llvm::Value* v = nullptr;        ///< the value; null: zero
+    std::array<llvm::Value*, 5> d{}; ///< derivatives, in that order
 };
 using Val = std::vector<Jet>; ///< one Jet a component
 
 /// Storage of an array: rows of <W x float> (or of floats when uniform), element after element, component after component, part
 /// after part.
 struct ArrayStorage {
-    llvm::Value* base = nullptr;
-    int length = 0, components = 0;
+    llvm::Value* base = nullptr;    ///< address of the first row
+    int length = 0, components = 0; ///< elements; components of an element
     ir::Kind element = ir::Kind::None;
-    Shape shape;
+    Shape shape;                   ///< of each component
     llvm::Value* stride = nullptr; ///< inputs: floats between rows (i64); null: rows are packed
-    bool readOnly = false;
+    bool readOnly = false;         ///< it is an input
+    /// Rows of an element.
     int rows() const { return components * (1 + __builtin_popcount(shape.parts)); }
 };
 
 /// Writes the functions of one kernel into an LLVM module; used once.
 class Emitter {
 public:
+    /// runtime: bitcode of the shadeops; width: lanes of a vector.
     Emitter(const ModuleRequest&, const Shapes&, int width, llvm::Module&, llvm::Module& runtime);
     /// The function of a kernel that does not suspend: a loop over strips.
     void emitLoopKernel();
     /// The functions of a suspending kernel: one coroutine a strip.
     void emitCoroutine();
+    /// String constants of the kernel, in the order of KernelCall::strings.
     const std::vector<std::string>& strings() const { return shared_->strings; }
     /// Bytes of KernelCall::memory that a kernel that does not suspend wants.
     uint64_t localBytes() const { return shared_->localBytes; }
@@ -192,8 +195,9 @@ private:
 /// Whether noise and its like are called through wrappers in this kernel, and how many vectors it works on at a time.
 struct Plan {
     int vectors = 1;
-    bool wrapCalls = false;
+    bool wrapCalls = false; ///< noise is called through wrappers
 };
+/// Of a kernel with these shapes.
 Plan plan(const ModuleRequest&, const Shapes&);
 
 } // namespace alpenglow::rsl::jit

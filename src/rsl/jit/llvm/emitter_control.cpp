@@ -186,7 +186,7 @@ Value* Emitter::withinTurns(const Inst* loop, bool varying, BasicBlock* exit) {
         mask_ = over;
         callService(loop->site, nullptr, nullptr);
     }
-    BasicBlock* said = b_.GetInsertBlock();
+    BasicBlock* reported = b_.GetInsertBlock();
     if (varying) b_.CreateCondBr(any(left), on, exit);
     else b_.CreateBr(exit);
     b_.SetInsertPoint(on);
@@ -194,7 +194,7 @@ Value* Emitter::withinTurns(const Inst* loop, bool varying, BasicBlock* exit) {
     if (varying) {
         auto* going = b_.CreatePHI(vm_, 2, "going");
         going->addIncoming(before, from);
-        going->addIncoming(left, said);
+        going->addIncoming(left, reported);
         mask_ = going;
     }
     spend(b_.getInt32(1), mask_);

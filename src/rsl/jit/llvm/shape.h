@@ -17,8 +17,8 @@ inline constexpr uint8_t partsOfOrder(int order) { return order <= 0 ? 0 : order
 
 /// How much of a value there is: lanes or one number, and which derivatives.
 struct Shape {
-    bool varying = false;
-    uint8_t parts = 0; ///< a part that is not here is exactly zero
+    bool varying = false; ///< false: one number for all lanes
+    uint8_t parts = 0;    ///< a part that is not here is exactly zero
     /// Adds what the other has; true if that made a difference.
     bool join(Shape o) {
         const Shape before = *this;
@@ -32,6 +32,7 @@ struct Shape {
 /// Inst::order.
 class Shapes {
 public:
+    /// mixed: inputs of instances vary. zeroDerivative: symbols of the runtime whose derivatives are zero; may be null.
     Shapes(const ir::Kernel&, bool mixed, const std::set<std::string>* zeroDerivative);
     /// Of the body of a Function whose arguments have these shapes.
     const Shapes& function(const ir::Inst*, const std::vector<Shape>& arguments) const;
@@ -42,6 +43,7 @@ public:
     /// Whether result `index` of an instruction with several results has a Result instruction (dead ones are removed by the
     /// passes).
     bool used(const ir::Inst* i, int index) const { return i->results.empty() || used_.count({i, index}) != 0; }
+    /// Whether the kernel has requests for rays.
     bool hasRequests() const { return requests_; }
     /// Order that a Runtime instruction is called with, from its arguments' shapes and the wanted orders.
     int callOrder(const ir::Inst*) const;
@@ -75,13 +77,14 @@ private:
 /// Number of values that live at once where most do, counted in components and parts; for the choice of vectors in flight.
 struct Pressure {
     int live = 0;
-    int instructions = 0;
-    int runtimeCalls = 0;
-    int outOfLineCalls = 0; ///< derivative orders count 3 and 6
-    int widest = 64;        ///< the most lanes that the runtime has all of its functions for
-    int wideCalls = 0;      ///< of those, calls that carry derivatives: few registers are left
-    bool effects = false, loops = false;
+    int instructions = 0;                ///< number
+    int runtimeCalls = 0;                ///< calls of the runtime
+    int outOfLineCalls = 0;              ///< derivative orders count 3 and 6
+    int widest = 64;                     ///< the most lanes that the runtime has all of its functions for
+    int wideCalls = 0;                   ///< of those, calls that carry derivatives: few registers are left
+    bool effects = false, loops = false; ///< it has calls with effects; it has loops
 };
+/// outOfLine: calls of the runtime that are not inlined, by symbol, with the widest lanes; may be null.
 Pressure measure(const ir::Kernel&, const Shapes&, const std::map<std::string, int>* outOfLine);
 
 } // namespace alpenglow::rsl::jit

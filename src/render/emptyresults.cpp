@@ -1,4 +1,4 @@
-#include "render/lacks.h"
+#include "render/emptyresults.h"
 #include "base/printable.h"
 #include "scene/scene.h"
 #include <algorithm>
@@ -29,13 +29,13 @@ void sayMissingOutputs(const OutputPlan& plan, const world::World& world, Diagno
     const std::vector<std::string> missing = world.missingOutputs();
     if (missing.empty()) return;
     const std::vector<std::string> known = world.knownOutputs();
-    std::vector<std::string> said;
+    std::vector<std::string> reported;
     for (const OutputSpec& s : plan.pictures)
         for (const OutputVariable& v : s.variables) {
             if (v.source != Source::Engine || std::find(missing.begin(), missing.end(), v.name) == missing.end() ||
-                std::find(said.begin(), said.end(), v.name) != said.end())
+                std::find(reported.begin(), reported.end(), v.name) != reported.end())
                 continue;
-            said.push_back(v.name);
+            reported.push_back(v.name);
             const std::string near = nearestName(v.name, known);
             warn(diags, s.place, "display \"" + s.name + "\": no shader outputs \"" + v.name + "\"; its channels are 0",
                  near.empty() ? "" : "did you mean \"" + near + "\"?");

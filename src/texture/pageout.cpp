@@ -29,7 +29,7 @@ template <class T> void pointInto(Texels<T>& texels, const std::shared_ptr<const
 
 } // namespace
 
-void TextureSystem::settle(Texture& t, const SourcePlace& place) {
+void TextureSystem::pageOut(Texture& t, const SourcePlace& place) {
     const size_t bytes = t.bytes();
     // A quarter is reserved for pages of scratch files, which would otherwise be reloaded for every lookup.
     if (held_.fetch_add(bytes) + bytes <= limit_ - limit_ / 4 || t.kind == Kind::Shadow || bytes < kSmall) return;

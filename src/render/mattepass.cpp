@@ -6,6 +6,7 @@
 #include <bit>
 #include <cmath>
 #include <fmt/format.h>
+#include <span>
 #include <unordered_map>
 
 namespace alpenglow::render {
@@ -59,7 +60,12 @@ private:
     /// The ids of a surface, by layer.
     using Ids = std::vector<uint32_t>;
     const Ids& idsOf(const scene::Attributes*);
+    struct Seen {
+        const Ids* ids;
+        double share; ///< of what is behind the surfaces before it
+    };
     bool row(int worker, int y);
+    void see(const integrator::SampleResult&);
     void add(int x, int y, Vec2 place, const integrator::SampleResult&);
     void finish(const PixelShares&, size_t pixel);
 
@@ -72,7 +78,9 @@ private:
     std::vector<display::Matte>& out_;
     Window part_;                                           ///< pixels of the band
     std::vector<PixelShares> pixels_;                       ///< of part_
-    std::unordered_map<const scene::Attributes*, Ids> ids_; ///< only looked up, never walked through
+    std::unordered_map<const scene::Attributes*, Ids> ids_; ///< only looked up, never walked through; Seen points into it
+    std::vector<Seen> seen_;                                ///< by the sample that is added
+    std::vector<integrator::SampleResult> results_;         ///< kept, with the memory of its lists
     std::vector<std::map<std::string, uint32_t>> names_;
 };
 
@@ -87,7 +95,20 @@ const MatteLoop::Ids& MatteLoop::idsOf(const scene::Attributes* a) {
     return at->second;
 }
 
+/// What a sample sees, in the order of its surfaces.
+void MatteLoop::see(const integrator::SampleResult& sample) {
+    seen_.clear();
+    Color before(1);
+    for (const integrator::DepthStep& s : sample.transmittance) {
+        const Color hidden = before - s.transmittance;
+        before = s.transmittance;
+        const double share = (double(hidden.x) + double(hidden.y) + double(hidden.z)) / 3;
+        if (s.surface && share > 0) seen_.push_back({&idsOf(s.surface), share});
+    }
+}
+
 void MatteLoop::add(int x, int y, Vec2 place, const integrator::SampleResult& sample) {
+    see(sample);
     for (int py = std::max(part_.y0, y - by_); py <= std::min(part_.y1 - 1, y + by_); ++py)
         for (int px = std::max(part_.x0, x - bx_); px <= std::min(part_.x1 - 1, x + bx_); ++px) {
             const double w = double(filter_(double(x - px) + double(place.x) - 0.5, double(y - py) + double(place.y) - 0.5));
@@ -97,21 +118,15 @@ void MatteLoop::add(int x, int y, Vec2 place, const integrator::SampleResult& sa
             to.weights += w;
             to.sizes += std::fabs(w);
             to.samples += own;
-            Color before(1);
-            for (const integrator::DepthStep& s : sample.transmittance) {
-                const Color hidden = before - s.transmittance;
-                before = s.transmittance;
-                const double share = (double(hidden.x) + double(hidden.y) + double(hidden.z)) / 3;
-                if (!s.surface || !(share > 0)) continue;
-                const Ids& ids = idsOf(s.surface);
-                for (size_t i = 0; i < ids.size(); ++i) {
+            for (const Seen& s : seen_)
+                for (size_t i = 0; i < s.ids->size(); ++i) {
                     std::vector<Share>& list = to.of[i];
-                    auto at = std::find_if(list.begin(), list.end(), [&](const Share& k) { return k.id == ids[i]; });
-                    if (at == list.end()) at = list.insert(list.end(), {ids[i], 0, 0});
-                    at->weighted += w * share;
-                    at->own += own * share;
+                    const uint32_t id = (*s.ids)[i];
+                    auto at = std::find_if(list.begin(), list.end(), [&](const Share& k) { return k.id == id; });
+                    if (at == list.end()) at = list.insert(list.end(), {id, 0, 0});
+                    at->weighted += w * s.share;
+                    at->own += own * s.share;
                 }
-            }
         }
 }
 
@@ -120,14 +135,14 @@ bool MatteLoop::row(int worker, int y) {
     const int samples = nx_ * ny_, x0 = part_.x0 - bx_;
     const int64_t all = int64_t(samples) * (part_.width() + 2 * bx_);
     ImageRays image(job_.camera, seed_, nx_, ny_, jitter_);
-    std::vector<integrator::SampleResult> results;
     for (int64_t begun = 0; begun < all; begun += kSlice) {
         image.clear();
         const int64_t end = std::min(all, begun + kSlice);
         for (int64_t i = begun; i < end; ++i) image.ask(x0 + int(i / samples), y, int(i % samples));
         image.make();
         for (integrator::CameraRay& r : image.rays()) r.depths = true;
-        results.assign(image.rays().size(), {});
+        if (results_.size() < image.rays().size()) results_.resize(image.rays().size());
+        const std::span<integrator::SampleResult> results(results_.data(), image.rays().size());
         if (!job_.trace(worker, image.rays(), results)) return false;
         for (int64_t i = begun; i < end; ++i)
             add(x0 + int(i / samples), y, image.places()[size_t(i - begun)], results[size_t(i - begun)]);

@@ -10,6 +10,7 @@
 
 namespace alpenglow::integrator {
 
+/// Light of point, spot and distant lights that comes to vertices by mirrors and glass.
 class SpecularLights final : VertexStage {
 public:
     SpecularLights(const StageSet&, const VertexStages&);

@@ -15,6 +15,7 @@
 
 namespace alpenglow::integrator {
 
+/// Searches paths from points to lights by mirrors and glass.
 class SpecularSearch {
 public:
     /// seeds: must outlive the search.
@@ -22,11 +23,12 @@ public:
     ~SpecularSearch();
     /// A point to which light is sought. Camera space.
     struct Query {
-        Vec3 P;
+        Vec3 P;                                   ///< camera space
         const CausticSeeds::Cell* cell = nullptr; ///< of CausticSeeds::find()
         int bounces = 0;                          ///< most mirrors of its path
         float time = 0;                           ///< as a fraction of the open shutter
         uint32_t vertex = 0;                      ///< with `numbers`: key of the random numbers of this search
+        /// Of the point's sample.
         SampleNumbers numbers{Sampler(0, 0, 0), 0};
     };
     /// Light that comes to a point by one path, over the probability of having found it.
@@ -40,9 +42,9 @@ public:
     bool run(std::span<const Query>, std::span<Found> found, const StopFlag* stop);
     /// Counts since the search was made.
     struct Counts {
-        uint64_t searches = 0, found = 0, probes = 0;
-        uint64_t mirrors = 0; ///< that these probes were to meet
-        uint64_t lost = 0;    ///< paths that kMostTrials others did not find again; their light is too low
+        uint64_t searches = 0, found = 0, probes = 0; ///< searches; those that found a path; probes sent
+        uint64_t mirrors = 0;                         ///< that these probes were to meet
+        uint64_t lost = 0; ///< paths that kMostTrials others did not find again; their light is too low
     };
     const Counts& counts() const { return counts_; }
     const Counters& counters() { return pipeline_.counters(); }

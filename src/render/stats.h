@@ -47,7 +47,7 @@ struct RenderStats {
     /// Searches under path for light of point, spot and distant lights by mirrors and glass (docs/light.md): photons where they
     /// begin, searches, those that found a path, probes sent.
     struct Specular {
-        uint64_t seeds = 0, searches = 0, found = 0, probes = 0;
+        uint64_t seeds = 0, searches = 0, found = 0, probes = 0; ///< numbers
     } specular;
     /// The guides of light samples under path (docs/light.md): light samples that they were built from, lights that have one,
     /// their cells, and cells where samples follow them.

@@ -34,8 +34,8 @@ std::vector<float> Interpreter::toRgb(const std::vector<double>& c) const {
 }
 
 void Interpreter::sayOtherType(const OtherType& o, const SourcePlace& place) {
-    reporter.once("ri:type:" + std::string(o.said), Severity::Warning, Rie::BadToken, place,
-                  fmt::format("there is no type \"{}\"; it is read as {}", o.said, o.meant), std::string(o.hint));
+    reporter.once("ri:type:" + std::string(o.written), Severity::Warning, Rie::BadToken, place,
+                  fmt::format("there is no type \"{}\"; it is read as {}", o.written, o.meant), std::string(o.hint));
 }
 
 scene::Param Interpreter::bindOne(const Call& call, const RawParam& raw, Use use, const std::string& category, bool* keep) {

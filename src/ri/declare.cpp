@@ -132,7 +132,7 @@ constexpr OtherType kOtherTypes[] = {
 
 std::optional<Type> typeNamed(std::string_view s) {
     for (const OtherType& o : kOtherTypes)
-        if (s == o.said) return typeNamed(o.meant);
+        if (s == o.written) return typeNamed(o.meant);
     if (s == "float") return Type::Float;
     if (s == "integer" || s == "int") return Type::Integer;
     if (s == "string") return Type::String;
@@ -183,7 +183,7 @@ std::optional<Declaration> parseDeclaration(std::string_view text) { return from
 const OtherType* otherTypeIn(std::string_view text) {
     for (const std::string_view w : words(text))
         for (const OtherType& o : kOtherTypes)
-            if (w == o.said) return &o;
+            if (w == o.written) return &o;
     return nullptr;
 }
 

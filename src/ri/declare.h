@@ -21,7 +21,7 @@ std::optional<Declaration> parseDeclaration(std::string_view text);
 
 /// A type that other programs write and RIB does not have, the type that it is read as, and what to write instead.
 struct OtherType {
-    std::string_view said, meant, hint;
+    std::string_view written, meant, hint;
 };
 /// The type of a declaration "[class] type [[n]]" that RIB does not have, such as "double"; null: it has none of these.
 const OtherType* otherTypeIn(std::string_view text);

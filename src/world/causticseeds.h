@@ -31,7 +31,7 @@ class CausticSeeds {
 public:
     /// Some seeds: in the order of seed().
     struct Range {
-        uint32_t first = 0, count = 0;
+        uint32_t first = 0, count = 0; ///< index, and number
     };
     /// Seeds that came to rest near a point.
     struct Cell {

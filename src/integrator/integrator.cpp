@@ -8,8 +8,9 @@
 
 namespace alpenglow::integrator {
 
-std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame> frame, const Settings& settings, Diagnostics& d) {
-    return World::build(std::move(frame), settings, services::serviceTable(), makeKernelEvaluator, d);
+std::shared_ptr<const World> buildWorld(const std::shared_ptr<const scene::Frame>& frame, const Settings& settings,
+                                        Diagnostics& d) {
+    return World::build(frame, settings, services::serviceTable(), makeKernelEvaluator, d);
 }
 
 struct Integrator::Impl {

@@ -19,7 +19,7 @@
 namespace alpenglow::integrator {
 
 /// World::build() with an Evaluator that runs kernels as the integrator does.
-std::shared_ptr<const World> buildWorld(std::shared_ptr<const scene::Frame>, const Settings&, Diagnostics&);
+std::shared_ptr<const World> buildWorld(const std::shared_ptr<const scene::Frame>&, const Settings&, Diagnostics&);
 
 /// Light along camera rays. One for each thread; it is expensive to construct.
 class Integrator {

@@ -170,7 +170,7 @@ void Interpreter::addProfile(Call& call) {
     if (path.empty()) return; // reported by locate()
     Diagnostics reported;
     const auto bytes = readWholeFile(path, limits::kShaderFileLooked, reported);
-    for (Diagnostic d : reported.all()) reporter.error(d.code, place, d.message, d.hint);
+    for (const Diagnostic& d : reported.all()) reporter.error(d.code, place, d.message, d.hint);
     if (!bytes) return;
     std::string why;
     const auto profile = lightProfile({bytes->begin(), bytes->end()}, why);

@@ -21,8 +21,8 @@ private:
 } // namespace
 
 Engine transportEngine() {
-    return {[](std::shared_ptr<const scene::Frame> f, const world::Settings& s, Diagnostics& d) {
-                return integrator::buildWorld(std::move(f), s, d);
+    return {[](const std::shared_ptr<const scene::Frame>& f, const world::Settings& s, Diagnostics& d) {
+                return integrator::buildWorld(f, s, d);
             },
             [](std::shared_ptr<const world::World> w, Diagnostics& d) -> std::unique_ptr<Tracer> {
                 return std::make_unique<IntegratorTracer>(std::move(w), d);

@@ -164,7 +164,7 @@ private:
         if (take("$")) return variable();
         if (c == '\'' || c == '"') {
             ConditionValue v{true, 0, {}};
-            while (++at_ < text_.size() && text_[at_] != c) {
+            for (++at_; at_ < text_.size() && text_[at_] != c; ++at_) {
                 if (text_[at_] == '\\' && at_ + 1 < text_.size() && text_[at_ + 1] == c) ++at_; // the quote itself
                 v.text += text_[at_];
             }

@@ -32,10 +32,10 @@ std::string printed(const char* format, va_list list) {
 }
 
 /// A comment as callbacks get it: a format that prints it, so that it has no arguments.
-void give(RtArchiveCallback callback, const std::string& kind, const std::string& text) {
-    std::string type = kind, format;
+void give(RtArchiveCallback callback, std::string kind, const std::string& text) {
+    std::string format;
     for (const char c : text) format += c == '%' ? "%%" : std::string(1, c);
-    callback(type.data(), format.data());
+    callback(kind.data(), format.data());
 }
 
 } // namespace

@@ -143,7 +143,7 @@ public:
         RifPlugin* const outer = std::exchange(tPlugin, plugin_.get());
         try {
             RifArguments a(c, sketch_.declarations, [this](const std::string& text) { return handleOf(text); });
-            const RtPointer handle = f->call(filter_, a);
+            void* const handle = f->call(filter_, a);
             if (a.isLight() && handle) handles_[c.text(1)] = handle;
         } catch (const NotInC&) { execute(c); } catch (const std::exception& e) {
             threw(c, fmt::format(": {}", e.what()));

@@ -32,8 +32,11 @@ size_t optionalInText(const Shadeop& op) {
 
 /// Whether a text has conversions of printf().
 bool converts(const std::string& pattern) {
-    for (size_t i = 0; i + 1 < pattern.size(); ++i)
-        if (pattern[i] == '%' && pattern[++i] != '%') return true;
+    for (size_t i = 0; i + 1 < pattern.size(); ++i) {
+        if (pattern[i] != '%') continue;
+        if (pattern[i + 1] != '%') return true;
+        ++i; // "%%" is one sign
+    }
     return false;
 }
 

@@ -79,7 +79,7 @@ std::string Checker::methodNamed(Type t, const std::string& method, size_t argum
         name = method.substr(colon + 2);
     }
     for (;;) {
-        const std::string full = structures_.of(t).name + "->" + name;
+        std::string full = structures_.of(t).name + "->" + name;
         const auto [begin, end] = methods_.equal_range(full);
         for (auto f = begin; f != end; ++f)
             if (f->second->parameters.size() == arguments + 1) return full;

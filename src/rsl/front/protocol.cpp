@@ -113,7 +113,7 @@ std::string OutputName::text() const {
     t += name;
     if (length) t += "#";
     if (block > 0) t += "#" + std::to_string(block);
-    return elementOf(std::move(t), element);
+    return elementOf(t, element);
 }
 
 std::optional<QueriedOutput> QueriedOutput::parse(const std::string& text) {

@@ -95,6 +95,7 @@ ExprPtr Builder::namedNow(const Expr& e, std::vector<std::pair<size_t, Inst*>>& 
 
 /// The call without names that are made; itself where it has none. Names that only the run knows are refused.
 const Expr& Builder::withNames(const Expr& e) {
+    // NOLINTNEXTLINE(bugprone-return-const-ref-from-parameter): an expression of the syntax tree, which outlives the builder
     if (!hasMadeNames(e.pairs)) return e;
     std::vector<std::pair<size_t, Inst*>> open;
     named_.push_back(namedNow(e, open));

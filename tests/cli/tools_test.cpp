@@ -7,7 +7,6 @@
 
 namespace tools_test {
 
-namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
 namespace {

@@ -225,7 +225,7 @@ std::string profile(const std::string& name, const std::string& text) {
 const char* kProfile = "IESNA:LM-63-2002\n[TEST] none\nTILT=NONE\n1 1000 1 3 1 1 2 0 0 0\n1 1 50\n0 45 90\n0\n200 100 0\n";
 
 TEST(RisProfiles, LightIsAsItsPhotometrySays) {
-    const std::string file = profile("ris.ies", kProfile);
+    profile("ris.ies", kProfile);
     const auto with = [&](Vec3 at) {
         writePaint();
         Scene s(

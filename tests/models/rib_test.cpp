@@ -34,7 +34,7 @@ std::string rib(Model m, const RibOptions& o = {}, std::string* notes = nullptr)
     };
     writeRib(
         m, o, maps, [&](std::string_view t) { text += t; },
-        [&](std::string n) {
+        [&](const std::string& n) {
             if (notes) *notes += n + "\n";
         });
     return text;

@@ -47,7 +47,6 @@ public:
         uint64_t lost = 0; ///< paths that kMostTrials others did not find again; their light is too low
     };
     const Counts& counts() const { return counts_; }
-    const Counters& counters() { return pipeline_.counters(); }
 
 private:
     struct Trial;
